@@ -1,0 +1,9 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace mlo::apps {
+
+// Each adds one subcommand, with its options, help and examples, to the program; its callback does the work
+// and throws CLI::RuntimeError(exit code) or mlo::InputError to end with an error.
+}  // namespace mlo::apps

@@ -1,0 +1,28 @@
+# mlo_add_library(name SOURCES ... HEADERS ... DEPENDS ... PRIVATE_DEPENDS ...)
+# One static library mlo::name per folder; its headers are installed as <mlo/name/...>.
+function(mlo_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(mlo_${name} STATIC ${ARG_SOURCES})
+  add_library(mlo::${name} ALIAS mlo_${name})
+  set_target_properties(mlo_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(mlo_${name} PUBLIC cxx_std_20)
+  target_sources(mlo_${name} PUBLIC FILE_SET HEADERS
+    BASE_DIRS ${PROJECT_SOURCE_DIR}/cpp FILES ${ARG_HEADERS})
+  target_link_libraries(mlo_${name} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  if(TARGET mlo_sanitizers)
+    target_link_libraries(mlo_${name} PUBLIC $<BUILD_INTERFACE:mlo_sanitizers>)
+  endif()
+  mlo_set_warnings(mlo_${name})
+  set_property(GLOBAL APPEND PROPERTY MLO_LIBRARIES mlo_${name})
+endfunction()
+
+# mlo_add_test(name SOURCES ... DEPENDS ...): one GoogleTest program per folder, registered with ctest.
+function(mlo_add_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  mlo_set_warnings(test_${name})
+  add_test(NAME ${name} COMMAND test_${name})
+  set_tests_properties(${name} PROPERTIES ENVIRONMENT "MLO_SOURCE_DIR=${PROJECT_SOURCE_DIR}")
+endfunction()

@@ -1,0 +1,56 @@
+#include "mlo/core/box.hpp"
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace mlo {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, ObjectClass>, 10> kNames{{
+    {"car", ObjectClass::car},
+    {"van", ObjectClass::van},
+    {"truck", ObjectClass::truck},
+    {"pedestrian", ObjectClass::pedestrian},
+    {"cyclist", ObjectClass::cyclist},
+    {"other", ObjectClass::other},
+    // spellings of KITTI and others; the first entry of a class is the one that to_string gives
+    {"person", ObjectClass::pedestrian},
+    {"person_sitting", ObjectClass::pedestrian},
+    {"tram", ObjectClass::other},
+    {"misc", ObjectClass::other},
+}};
+
+}  // namespace
+
+std::string_view to_string(ObjectClass object_class) {
+  for (const auto& [name, value] : kNames) {
+    if (value == object_class) return name;
+  }
+  return "other";
+}
+
+std::optional<ObjectClass> object_class_from(std::string_view name) {
+  std::string lower;
+  for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const auto& [known, value] : kNames) {
+    if (known == lower) return value;
+  }
+  return std::nullopt;
+}
+
+SE3 Box3d::T_lidar_object() const {
+  return {so3_exp({0.0, 0.0, yaw_rad}), center_lidar_m};
+}
+
+bool Box3d::contains(const Eigen::Vector3d& p_lidar, double margin_m) const {
+  const Eigen::Vector3d d = p_lidar - center_lidar_m;
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  const Eigen::Vector3d p_object(c * d.x() + s * d.y(), -s * d.x() + c * d.y(), d.z());
+  return ((p_object.cwiseAbs() - 0.5 * size_lwh_m).array() <= margin_m).all();
+}
+
+}  // namespace mlo
