@@ -7,13 +7,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/scratch_folder.hpp"
+#include "io/file_bytes.hpp"
 #include "mlo/core/error.hpp"
 #include "mlo/io/point_cloud_file.hpp"
+#include "temp_folder.hpp"
 
 namespace mlo {
 namespace {
 
+using test::count_files;
+using test::read_bytes;
+using test::TempFolder;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -69,13 +73,13 @@ TEST_P(ForeignFile, GivesWhatWasWritten) {
 }
 
 TEST_P(ForeignFile, IsRefusedWhenCutOff) {
-  const ScratchFolder folder;
-  const std::filesystem::path path = folder / GetParam().name;
+  const TempFolder folder;
+  const std::filesystem::path path = folder.path() / GetParam().name;
   const std::string bytes = read_bytes(fixtures() / GetParam().name);
   ASSERT_FALSE(bytes.empty());
   std::size_t complete_from = bytes.size();
   for (std::size_t size = 0; size < bytes.size(); size += bytes.size() / 61 + 1) {
-    write_bytes(path, bytes.substr(0, size));
+    folder.write(GetParam().name, bytes.substr(0, size));
     try {
       // What does not throw must have all points: only padding, faces or the last digits may be missing.
       EXPECT_EQ(read_point_cloud(path).points.size(), 5U) << size;
@@ -88,15 +92,15 @@ TEST_P(ForeignFile, IsRefusedWhenCutOff) {
 }
 
 TEST_P(ForeignFile, NeverCrashesWhenDamaged) {
-  const ScratchFolder folder;
-  const std::filesystem::path path = folder / GetParam().name;
+  const TempFolder folder;
+  const std::filesystem::path path = folder.path() / GetParam().name;
   const std::string bytes = read_bytes(fixtures() / GetParam().name);
   std::mt19937 rng(11);
   for (int i = 0; i < 50; ++i) {
     std::string damaged = bytes;
     for (int k = 0; k < 3; ++k)
       damaged[rng() % std::min<std::size_t>(bytes.size(), 900)] = static_cast<char>(rng());
-    write_bytes(path, damaged);
+    folder.write(GetParam().name, damaged);
     try {
       const PointCloudFile cloud = read_point_cloud(path);
       for (const Point& point : cloud.points) EXPECT_TRUE(point.p_lidar.allFinite());
@@ -126,9 +130,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// Writes the text and reads it as a cloud.
 PointCloudFile read_text(const std::string& name, const std::string& text) {
-  const ScratchFolder folder;
-  write_bytes(folder / name, text);
-  return read_point_cloud(folder / name);
+  const TempFolder folder;
+  folder.write(name, text);
+  return read_point_cloud(folder.path() / name);
 }
 
 std::string ply_of_times(const std::string& type, const std::string& lines) {
@@ -273,13 +277,13 @@ TEST(PointCloudFile, SaysWhatIsWrongWithAPlyFile) {
 }
 
 TEST(PointCloudFile, SaysThatThereIsNoSuchFile) {
-  const ScratchFolder folder;
-  EXPECT_THAT([&] { read_point_cloud(folder / "none.pcd"); },
+  const TempFolder folder;
+  EXPECT_THAT([&] { read_point_cloud(folder.path() / "none.pcd"); },
               ThrowsMessage<InputError>(HasSubstr("cannot be opened")));
-  EXPECT_THAT([&] { read_point_cloud(folder / "scan.las"); },
+  EXPECT_THAT([&] { read_point_cloud(folder.path() / "scan.las"); },
               ThrowsMessage<InputError>(HasSubstr("convert it")));
-  std::filesystem::create_directory(folder / "folder.ply");
-  EXPECT_THAT([&] { read_point_cloud(folder / "folder.ply"); },
+  std::filesystem::create_directory(folder.path() / "folder.ply");
+  EXPECT_THAT([&] { read_point_cloud(folder.path() / "folder.ply"); },
               ThrowsMessage<InputError>(HasSubstr("folder.ply")));
 }
 
@@ -303,25 +307,25 @@ void expect_same(const std::vector<MapPoint>& read, const std::vector<MapPoint>&
 }
 
 TEST(MapFile, RoundTrips) {
-  const ScratchFolder folder;
+  const TempFolder folder;
   for (const std::size_t size : {0U, 1U, 1000U}) {
     const std::vector<MapPoint> map = random_map(size);
-    write_ply(folder / "map.ply", map);
-    expect_same(read_map(folder / "map.ply"), map);
+    write_ply(folder.path() / "map.ply", map);
+    expect_same(read_map(folder.path() / "map.ply"), map);
     for (const PcdEncoding encoding : {PcdEncoding::binary, PcdEncoding::binary_compressed}) {
-      write_pcd(folder / "map.pcd", map, encoding);
-      expect_same(read_map(folder / "map.pcd"), map);
+      write_pcd(folder.path() / "map.pcd", map, encoding);
+      expect_same(read_map(folder.path() / "map.pcd"), map);
     }
   }
-  EXPECT_EQ(folder.count_files(), 2U);
+  EXPECT_EQ(count_files(folder.path()), 2U);
 }
 
 TEST(MapFile, LabelsThatAreUnknownOrMissingAreUnknown) {
-  const ScratchFolder folder;
-  write_bytes(folder / "a.ply",
-              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-              "property float z\nproperty int label\nend_header\n1 2 3 4\n1 2 3 5\n1 2 3 -1\n");
-  const std::vector<MapPoint> map = read_map(folder / "a.ply");
+  const TempFolder folder;
+  folder.write("a.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+               "property float z\nproperty int label\nend_header\n1 2 3 4\n1 2 3 5\n1 2 3 -1\n");
+  const std::vector<MapPoint> map = read_map(folder.path() / "a.ply");
   ASSERT_EQ(map.size(), 3U);
   EXPECT_EQ(map[0].label, MapLabel::object);
   EXPECT_EQ(map[1].label, MapLabel::unknown);
@@ -331,9 +335,9 @@ TEST(MapFile, LabelsThatAreUnknownOrMissingAreUnknown) {
 }
 
 TEST(MapFile, PointsThatAreNotNumbersComeBackAsInvalid) {
-  const ScratchFolder folder;
-  write_ply(folder / "map.ply", std::vector<MapPoint>{{{kNanF, 0.0F, 0.0F}, 0.0F, MapLabel::edge}});
-  EXPECT_EQ(read_point_cloud(folder / "map.ply").invalid_points, 1U);
+  const TempFolder folder;
+  write_ply(folder.path() / "map.ply", std::vector<MapPoint>{{{kNanF, 0.0F, 0.0F}, 0.0F, MapLabel::edge}});
+  EXPECT_EQ(read_point_cloud(folder.path() / "map.ply").invalid_points, 1U);
 }
 
 }  // namespace
