@@ -3,34 +3,30 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace mlo::test {
 
-/// A folder of its own that is removed again at the end of the test.
+/// A new empty folder that is removed at the end of the scope.
 class TempFolder {
  public:
   TempFolder() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / (std::string("mlo_") + info->test_suite_name() + "_" +
-                                                      info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(path_);
+    std::string pattern = (std::filesystem::temp_directory_path() / "mlo-test-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
   }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
+  ~TempFolder() { std::filesystem::remove_all(path_); }
   TempFolder(const TempFolder&) = delete;
   TempFolder& operator=(const TempFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Writes a text file into the folder; gives its path.
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
+
+  /// Writes a file, with the folders above it; returns its path.
+  std::filesystem::path write(const std::filesystem::path& name, std::string_view content) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << text;
+    std::ofstream(file, std::ios::binary) << content;
     return file;
   }
 

@@ -1,41 +1,37 @@
 #include "mlo/io/trajectory_file.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
-#include "mlo/io/text_table.hpp"
+#include "mlo/io/pose_files.hpp"
+#include "mlo/io/text_records.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr std::size_t kKittiFields = 12;
-constexpr std::size_t kTumFields = 8;
-// Files with few digits are off by 1e-3; anything beyond this is not a rotation at all.
-constexpr double kRotationTolerance = 1e-2;
+constexpr std::size_t kKittiNumbers = 12;
+constexpr std::size_t kTumNumbers = 8;
+constexpr double kQuaternionTolerance = 1e-2;
 
-SE3 kitti_pose(const TextRow& row) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < kKittiFields; ++i) {
-    matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = row.number(i);
+SE3 tum_pose(const std::vector<double>& row, const std::string& where) {
+  const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
+  const SE3 pose(q, {row[1], row[2], row[3]});
+  if (!(std::abs(q.norm() - 1.0) < kQuaternionTolerance) || !pose.is_finite() || !std::isfinite(row[0])) {
+    throw InputError(fmt::format(
+        "{}: no finite pose with a quaternion of length 1; TUM rows are stamp tx ty tz qx qy qz qw", where));
   }
-  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  const bool orthogonal = (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < kRotationTolerance;
-  if (!orthogonal || R.determinant() < 0.0) {
-    row.fail("the 3x3 part is not a rotation; expected KITTI rows r11 r12 r13 tx r21 ...");
-  }
-  return SE3::from_matrix(matrix);
+  return pose;
 }
 
-SE3 tum_pose(const TextRow& row) {
-  const Eigen::Quaterniond q(row.number(7), row.number(4), row.number(5), row.number(6));
-  if (std::abs(q.norm() - 1.0) > kRotationTolerance) {
-    row.fail("the quaternion does not have length 1; expected TUM rows stamp tx ty tz qx qy qz qw");
-  }
-  return {q, {row.number(1), row.number(2), row.number(3)}};
+bool is_comment(const std::string& line) {
+  const std::size_t begin = line.find_first_not_of(" \t");
+  return begin == std::string::npos || line[begin] == '#';
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
@@ -48,17 +44,20 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 PoseList read_trajectory(const std::filesystem::path& path) {
-  const TextTable table(path);
+  const std::vector<std::string> lines = read_lines(path);
   PoseList poses;
-  for (const TextRow& row : table.rows()) {
-    const std::size_t expected = table.rows().front().size();
-    if (row.size() != expected || (expected != kKittiFields && expected != kTumFields)) {
-      row.fail(
-          fmt::format("{} values; expected 12 in every row (KITTI) or 8 in every row (TUM)", row.size()));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (is_comment(lines[i])) continue;
+    const std::string where = fmt::format("{}:{}", path.string(), i + 1);
+    const std::vector<double> row = parse_numbers(lines[i], where);
+    if (row.size() == kKittiNumbers && poses.frames.empty()) return read_kitti_poses(path);
+    if (row.size() != kTumNumbers) {
+      throw InputError(
+          fmt::format("{}: {} numbers; expected 12 in every row (KITTI) or 8 (TUM)", where, row.size()));
     }
     poses.frames.push_back(poses.frames.size());
-    if (expected == kTumFields) poses.stamps_s.push_back(row.number(0));
-    poses.T_world_body.push_back(expected == kTumFields ? tum_pose(row) : kitti_pose(row));
+    poses.stamps_s.push_back(row[0]);
+    poses.T_world_body.push_back(tum_pose(row, where));
   }
   return poses;
 }

@@ -10,7 +10,7 @@ namespace mlo {
 ///  - 12, KITTI: the upper 3x4 of the pose's matrix row by row. Rows are numbered from 0 as frames; no
 ///  stamps.
 ///  - 8, TUM: stamp [s], translation [m], quaternion qx qy qz qw. Rows are numbered from 0 as frames.
-/// Blank lines and lines that begin with # are skipped. A file without rows gives no poses.
+/// Lines of TUM files that are blank or begin with # are skipped. A file without rows gives no poses.
 /// @throws InputError naming file and line: another number of values, no finite number, no rotation
 PoseList read_trajectory(const std::filesystem::path& path);
 
