@@ -21,7 +21,8 @@ struct SensorConfig {
   int columns = 2048;                ///< firings per revolution (simulation only)
   double min_range_m = 1.0;
   double max_range_m = 120.0;
-  double vertical_correction_deg = 0.0;  ///< rotation of every point about z x p that undoes an elevation bias
+  double vertical_correction_deg =
+      0.0;  ///< rotation of every point about z x p that undoes an elevation bias
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -46,6 +47,10 @@ struct SensorConfig {
 
   /// One elevation per ring [deg], highest first: the table, or evenly spaced; empty when rings is 0.
   std::vector<double> elevations_deg() const;
+
+  /// What contradicts itself, one sentence each: limits in the wrong order, a beam table of another length
+  /// than rings or not highest first.
+  std::vector<std::string> find_problems() const;
 };
 
 }  // namespace mlo
