@@ -163,8 +163,7 @@ TEST(ConfigYaml, PrintedTextReadsBackExactly) {
 }
 
 TEST(ConfigYaml, PrintsDocumentationRangesAndValues) {
-  EXPECT_EQ(printed({}), R"(
-# the outer group
+  EXPECT_EQ(printed({}), R"(# the outer group
 outer:
   # a switch (true or false)
   enabled: true

@@ -71,11 +71,12 @@ const ConfigField* find_field(const ConfigView& view, const std::string& path) {
 /// The headings of all groups around `path` that are not open yet, the outermost first.
 std::string headings(const ConfigView& view, const std::string& group_path, std::set<std::string>& opened) {
   if (group_path.empty() || opened.contains(group_path)) return {};
+  const std::string gap = opened.empty() ? "" : "\n";
   const std::string outer = headings(view, parent_of(group_path), opened);
   opened.insert(group_path);
   const std::string indent = indent_of(group_path);
   const ConfigGroup* const group = find_group(view, group_path);
-  return outer + "\n" + comment(group->doc, "", indent) + indent + leaf_of(group_path) + ":\n";
+  return outer + gap + comment(group->doc, "", indent) + indent + leaf_of(group_path) + ":\n";
 }
 
 std::vector<std::string> all_keys(const ConfigView& view) {
