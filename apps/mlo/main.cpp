@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -64,29 +65,7 @@ void report_usage_error(const CLI::App& program, const std::vector<std::string>&
                            suggestion.empty() ? "" : fmt::format("; did you mean '{}'?", suggestion));
 }
 
-int run(CLI::App& program, int argc, char** argv) {
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::RuntimeError& e) {
-    return e.get_exit_code();
-  } catch (const CLI::Success& e) {  // --help, --version
-    return program.exit(e);
-  } catch (const CLI::ParseError& e) {
-    report_usage_error(program, {argv + 1, argv + argc}, e);
-    return kBadUsage;
-  } catch (const mlo::InputError& e) {
-    spdlog::error("{}", e.what());
-    return kBadInput;
-  } catch (const std::exception& e) {
-    spdlog::critical("internal error: {}", e.what());
-    return kBug;
-  }
-  return kDone;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("mlo"));
   spdlog::set_pattern("%^%l%$: %v");
 
@@ -99,5 +78,32 @@ int main(int argc, char** argv) {
   program.footer(kFooter);
   add_global_options(program);
   mlo::apps::add_config(program);
-  return run(program, argc, argv);
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::RuntimeError& e) {
+    return e.get_exit_code();
+  } catch (const CLI::Success& e) {  // --help, --version
+    return program.exit(e);
+  } catch (const CLI::ParseError& e) {
+    report_usage_error(program, {argv + 1, argv + argc}, e);
+    return kBadUsage;
+  } catch (const mlo::InputError& e) {
+    spdlog::error("{}", e.what());
+    return kBadInput;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "critical: internal error: %s\n", e.what());
+  } catch (...) {
+    std::fputs("critical: internal error\n", stderr);
+  }
+  return kBug;
 }

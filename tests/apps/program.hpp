@@ -27,8 +27,8 @@ inline std::string read_text(const std::filesystem::path& file) {
 /// A folder for the current test alone, empty at its start.
 inline std::filesystem::path fresh_folder() {
   const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(testing::TempDir()) /
-                      (std::string("mlo_") + test->test_suite_name() + "_" + test->name());
+  auto folder = std::filesystem::path(testing::TempDir()) /
+                (std::string("mlo_") + test->test_suite_name() + "_" + test->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
