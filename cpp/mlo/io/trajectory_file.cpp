@@ -62,12 +62,21 @@ PoseList read_trajectory(const std::filesystem::path& path) {
   return poses;
 }
 
+std::string kitti_row(const SE3& pose) {
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = pose.matrix().topRows<3>();
+  return fmt::format("{}", fmt::join(rows.data(), rows.data() + rows.size(), " "));
+}
+
+std::string tum_row(double stamp_s, const SE3& pose) {
+  const Eigen::Vector3d& t = pose.translation();
+  Eigen::Quaterniond q = pose.rotation();
+  if (q.w() < 0.0) q.coeffs() *= -1.0;
+  return fmt::format("{} {} {} {} {} {} {} {}", stamp_s, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+}
+
 void write_kitti_poses(const std::filesystem::path& path, const PoseList& poses) {
   std::string text;
-  for (const SE3& pose : poses.T_world_body) {
-    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = pose.matrix().topRows<3>();
-    fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(rows.data(), rows.data() + rows.size(), " "));
-  }
+  for (const SE3& pose : poses.T_world_body) text += kitti_row(pose) + '\n';
   write_text(path, text);
 }
 
@@ -79,11 +88,7 @@ void write_tum_poses(const std::filesystem::path& path, const PoseList& poses) {
   }
   std::string text;
   for (std::size_t i = 0; i < poses.T_world_body.size(); ++i) {
-    const Eigen::Vector3d& t = poses.T_world_body[i].translation();
-    Eigen::Quaterniond q = poses.T_world_body[i].rotation();
-    if (q.w() < 0.0) q.coeffs() *= -1.0;
-    fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {}\n", poses.stamps_s[i], t.x(), t.y(),
-                   t.z(), q.x(), q.y(), q.z(), q.w());
+    text += tum_row(poses.stamps_s[i], poses.T_world_body[i]) + '\n';
   }
   write_text(path, text);
 }
