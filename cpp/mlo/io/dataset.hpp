@@ -48,7 +48,7 @@ struct Calibration {
 /// What was found in a folder.
 struct Dataset {
   std::string format;    ///< kitti_odometry, kitti_raw, kitti_tracking or folder
-  std::string sequence;  ///< empty where the folder holds only one
+  std::string sequence;  ///< its name; empty for a plain folder
   std::filesystem::path root;
   std::unique_ptr<ScanSource> scans;
   Calibration calibration;
@@ -61,7 +61,9 @@ struct Dataset {
 
 struct OpenOptions {
   std::string format = "auto";
-  std::string sequence;  ///< required where the folder holds several
+  std::string sequence = {};  ///< required where the folder holds several
+  std::optional<SensorConfig> sensor =
+      {};  ///< instead of the one that this kind of data is known to come from
 };
 
 /// Opens a folder of scans; the layout is recognised from what lies in it.

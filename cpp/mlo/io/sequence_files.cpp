@@ -1,13 +1,14 @@
 #include "mlo/io/sequence_files.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "mlo/core/error.hpp"
+#include "mlo/io/text.hpp"
 
 namespace mlo {
 namespace {
@@ -47,14 +48,6 @@ std::size_t fill_stamps(std::vector<ScanFile>& scans, double period_s) {
 
 }  // namespace
 
-std::optional<std::size_t> parse_index(const std::string& digits) {
-  std::size_t value = 0;
-  const char* end = digits.data() + digits.size();
-  const auto [parsed, error] = std::from_chars(digits.data(), end, value);
-  if (error != std::errc{} || parsed != end) return std::nullopt;
-  return value;
-}
-
 std::vector<fs::path> subfolders(const fs::path& folder) {
   std::vector<fs::path> folders = entries(folder);
   std::erase_if(folders, [](const fs::path& path) { return !fs::is_directory(path); });
@@ -69,15 +62,22 @@ bool holds_files(const fs::path& folder, const std::string& extension) {
 }
 
 std::vector<ScanFile> list_numbered_scans(const fs::path& folder, const std::string& extension) {
+  constexpr std::size_t kMostFramesPerFile = 1000;
   std::map<std::size_t, fs::path> by_frame;
   for (const fs::path& path : entries(folder)) {
-    const std::optional<std::size_t> frame = parse_index(path.stem().string());
+    const std::optional<std::size_t> frame = parse_count(path.stem().string());
     if (frame && path.extension() == extension) by_frame.emplace(*frame, path);
   }
   if (by_frame.empty()) return {};
+  const std::size_t first = by_frame.begin()->first;
+  const std::size_t last = by_frame.rbegin()->first;
+  if (last - first > kMostFramesPerFile * by_frame.size()) {
+    throw InputError(fmt::format("{}: {} files with numbers from {} to {}; remove those that are no scans",
+                                 folder.string(), by_frame.size(), first, last));
+  }
   const std::size_t digits = by_frame.begin()->second.stem().string().size();
   std::vector<ScanFile> scans;
-  for (std::size_t frame = by_frame.begin()->first; frame <= by_frame.rbegin()->first; ++frame) {
+  for (std::size_t frame = first; frame <= last; ++frame) {
     const auto found = by_frame.find(frame);
     const fs::path expected = folder / fmt::format("{:0{}}{}", frame, digits, extension);
     scans.push_back({.path = found == by_frame.end() ? expected : found->second, .frame = frame});
@@ -85,12 +85,17 @@ std::vector<ScanFile> list_numbered_scans(const fs::path& folder, const std::str
   return scans;
 }
 
+std::vector<double> stamps_by_frame(const std::vector<ScanFile>& scans, const std::vector<double>& list_s) {
+  std::vector<double> stamps_s;
+  for (const ScanFile& scan : scans) {
+    stamps_s.push_back(scan.frame < list_s.size() ? list_s[scan.frame] : kNoStamp);
+  }
+  return stamps_s;
+}
+
 std::vector<std::string> set_stamps(std::vector<ScanFile>& scans, const std::vector<double>& stamps_s,
                                     double period_s, const std::string& origin) {
-  for (ScanFile& scan : scans) {
-    scan.stamp_s =
-        scan.frame < stamps_s.size() ? stamps_s[scan.frame] : std::numeric_limits<double>::quiet_NaN();
-  }
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].stamp_s = stamps_s[i];
   std::vector<std::string> warnings;
   if (const std::size_t filled = fill_stamps(scans, period_s); filled > 0) {
     warnings.push_back(fmt::format("{}: no time for {} of {} scans; they were placed {:.4f} s apart", origin,
