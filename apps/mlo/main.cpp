@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", MLO_VERSION);
   program.failure_message(CLI::FailureMessage::help);
   mlo::apps::add_eval(program);
+  mlo::apps::add_info(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {

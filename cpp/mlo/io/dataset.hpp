@@ -16,6 +16,7 @@ namespace mlo {
 struct ScanReading {
   std::optional<Scan> scan;
   std::string problem;             ///< file, what is wrong and the remedy; empty when there is a scan
+  bool missing = false;            ///< there is no file at all
   std::size_t invalid_points = 0;  ///< points with NaN or infinite coordinates that were left out
 };
 
@@ -51,6 +52,7 @@ struct Dataset {
   std::string sequence;  ///< its name; empty for a plain folder
   std::filesystem::path root;
   std::unique_ptr<ScanSource> scans;
+  std::vector<double> stamps_s;  ///< of each scan, as far as known without reading it
   Calibration calibration;
   /// Lidar poses at the scans' stamps in the lidar frame at the first of them, where the data has them.
   std::optional<PoseList> truth;

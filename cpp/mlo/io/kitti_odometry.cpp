@@ -69,9 +69,8 @@ Dataset open_kitti_odometry(const SequenceFolder& sequence, const OpenOptions& o
     dataset.truth = lidar_truth(scans, read_kitti_poses(file), dataset.calibration.T_camera0_lidar,
                                 file.string(), dataset.warnings);
   }
-  dataset.scans = std::make_unique<ScanFiles>(
-      std::move(scans),
-      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = true});
+  set_scans(dataset, std::move(scans),
+            {.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = true});
   return dataset;
 }
 

@@ -78,9 +78,8 @@ Dataset open_kitti_raw(const SequenceFolder& drive, const OpenOptions& options) 
     dataset.truth = lidar_truth(scans, read_oxts_folder(oxts), dataset.calibration.T_imu_lidar, oxts.string(),
                                 dataset.warnings);
   }
-  dataset.scans = std::make_unique<ScanFiles>(
-      std::move(scans),
-      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
+  set_scans(dataset, std::move(scans),
+            {.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
   return dataset;
 }
 

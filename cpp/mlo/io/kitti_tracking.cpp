@@ -62,9 +62,8 @@ Dataset open_kitti_tracking(const SequenceFolder& sequence, const OpenOptions& o
   }
   dataset.truth = find_truth(part, file_name, scans, dataset);
   if (const fs::path file = part / "label_02" / file_name; fs::exists(file)) dataset.labels = file;
-  dataset.scans = std::make_unique<ScanFiles>(
-      std::move(scans),
-      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
+  set_scans(dataset, std::move(scans),
+            {.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
   return dataset;
 }
 

@@ -128,7 +128,7 @@ Dataset open_plain_folder(const SequenceFolder& folder, const OpenOptions& optio
   const double period_s = 1.0 / dataset.sensor.rate_hz;
   for (ScanFile& scan : scans) scan.duration_s = period_s;
   dataset.warnings = read_stamps(folder.path, period_s, scans);
-  dataset.scans = std::make_unique<ScanFiles>(std::move(scans), ScanFileTraits{.sensor = dataset.sensor});
+  set_scans(dataset, std::move(scans), {.sensor = dataset.sensor});
   return dataset;
 }
 

@@ -51,6 +51,7 @@ ScanReading ScanFiles::read(std::size_t index) const {
   const ScanFile& file = files_.at(index);
   ScanReading reading;
   if (!std::filesystem::exists(file.path)) {
+    reading.missing = true;
     reading.problem = fmt::format("{}: the scan is missing", file.path.string());
     return reading;
   }

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "mlo/core/error.hpp"
 #include "mlo/io/text.hpp"
@@ -44,6 +46,19 @@ std::size_t fill_stamps(std::vector<ScanFile>& scans, double period_s) {
     if (!known(*scan)) place(*scan, *(scan - 1));
   }
   return filled;
+}
+
+// "177-180, 192" for growing numbers.
+std::string ranges_text(const std::vector<std::size_t>& numbers) {
+  std::vector<std::string> ranges;
+  for (std::size_t begin = 0; begin < numbers.size();) {
+    std::size_t end = begin + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    ranges.push_back(end - begin == 1 ? fmt::format("{}", numbers[begin])
+                                      : fmt::format("{}-{}", numbers[begin], numbers[end - 1]));
+    begin = end;
+  }
+  return fmt::format("{}", fmt::join(ranges, ", "));
 }
 
 }  // namespace
@@ -104,7 +119,7 @@ std::vector<std::string> set_stamps(std::vector<ScanFile>& scans, const std::vec
   std::size_t unsorted = 0;
   for (std::size_t i = 1; i < scans.size(); ++i) unsorted += scans[i].stamp_s <= scans[i - 1].stamp_s;
   if (unsorted > 0)
-    warnings.push_back(fmt::format("{}: {} times are not later than the one before", origin, unsorted));
+    warnings.push_back(fmt::format("{}: times that are not later than the one before: {}", origin, unsorted));
   return warnings;
 }
 
@@ -118,6 +133,20 @@ double median_period_s(const std::vector<double>& stamps_s, double fallback_s) {
   const auto middle = periods_s.begin() + static_cast<std::ptrdiff_t>(periods_s.size() / 2);
   std::nth_element(periods_s.begin(), middle, periods_s.end());
   return *middle;
+}
+
+void set_scans(Dataset& dataset, std::vector<ScanFile> scans, ScanFileTraits traits) {
+  std::vector<std::size_t> missing;
+  for (const ScanFile& scan : scans) {
+    dataset.stamps_s.push_back(scan.stamp_s);
+    if (!fs::exists(scan.path)) missing.push_back(scan.frame);
+  }
+  if (!missing.empty()) {
+    dataset.warnings.push_back(fmt::format("{}: missing scans ({}): frame {}",
+                                           scans.front().path.parent_path().string(), missing.size(),
+                                           ranges_text(missing)));
+  }
+  dataset.scans = std::make_unique<ScanFiles>(std::move(scans), std::move(traits));
 }
 
 }  // namespace mlo

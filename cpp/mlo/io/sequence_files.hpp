@@ -45,4 +45,7 @@ std::vector<std::string> set_stamps(std::vector<ScanFile>& scans, const std::vec
 /// none.
 double median_period_s(const std::vector<double>& stamps_s, double fallback_s);
 
+/// Gives the dataset its scans and their stamps, and warns of files that are missing in between.
+void set_scans(Dataset& dataset, std::vector<ScanFile> scans, ScanFileTraits traits);
+
 }  // namespace mlo
