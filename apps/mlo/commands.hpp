@@ -10,5 +10,6 @@ namespace mlo::apps {
 void add_run(CLI::App& program);
 void add_eval(CLI::App& program);
 void add_config(CLI::App& program);
+void add_info(CLI::App& program);
 
 }  // namespace mlo::apps

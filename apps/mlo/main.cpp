@@ -80,6 +80,7 @@ int run(int argc, char** argv) {
   mlo::apps::add_run(program);
   mlo::apps::add_eval(program);
   mlo::apps::add_config(program);
+  mlo::apps::add_info(program);
 
   try {
     program.parse(argc, argv);
