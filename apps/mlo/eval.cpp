@@ -8,6 +8,7 @@ void add_eval(CLI::App& program) {
   CLI::App* eval = program.add_subcommand("eval", "Measure results against the truth");
   eval->require_subcommand(1);
   add_eval_trajectory(*eval);
+  add_eval_tracking(*eval);
 }
 
 }  // namespace mlo::apps
