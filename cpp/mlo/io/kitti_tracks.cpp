@@ -4,61 +4,77 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
-#include "mlo/io/text_table.hpp"
+#include "mlo/io/text_records.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr std::size_t kLabelFields = 17;
-constexpr std::size_t kResultFields = 18;
+// Numbers of a row, without the type that stands between the second and the third.
+constexpr std::size_t kLabelNumbers = 16;
+constexpr std::size_t kResultNumbers = 17;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
+  return text;
 }
 
-// Camera axes are x right, y down, z ahead; rotation_y turns about y, 0 along x.
-Box3d level_box(const TextRow& row) {
-  const double height_m = row.number(10);
+// From camera axes (x right, y down, z ahead), where rotation_y turns about y and is 0 along x.
+Box3d level_box(const Eigen::Vector3d& size_hwl_m, const Eigen::Vector3d& bottom_camera_m,
+                double rotation_y_rad) {
   Box3d box;
-  box.size_lwh_m = {row.number(12), row.number(11), height_m};
-  box.center_lidar_m = {row.number(15), -row.number(13), -(row.number(14) - 0.5 * height_m)};
-  box.yaw_rad = -row.number(16) - 0.5 * std::numbers::pi;
+  box.size_lwh_m = size_hwl_m.reverse();
+  box.center_lidar_m = {bottom_camera_m.z(), -bottom_camera_m.x(),
+                        -(bottom_camera_m.y() - 0.5 * size_hwl_m[0])};
+  box.yaw_rad = -rotation_y_rad - 0.5 * std::numbers::pi;
   return box;
 }
 
-ObjectRecord object_record(const TextRow& row) {
-  if (row.size() != kLabelFields && row.size() != kResultFields) {
-    row.fail(fmt::format("{} fields; expected 17 (label) or 18 (result with score) of a KITTI tracking file",
-                         row.size()));
+ObjectRecord object_record(const std::string& line, const std::string& where) {
+  std::istringstream stream(line);
+  std::string frame;
+  std::string id;
+  std::string type;
+  std::string rest;
+  std::getline(stream >> frame >> id >> type, rest);
+  const std::vector<double> v = parse_numbers(frame + " " + id + " " + rest, where);
+  const bool finite = std::all_of(v.begin(), v.end(), [](double value) { return std::isfinite(value); });
+  if ((v.size() != kLabelNumbers && v.size() != kResultNumbers) || !finite) {
+    throw InputError(
+        fmt::format("{}: not frame, id, type and 14 (label) or 15 (result with score) finite numbers, as "
+                    "KITTI tracking files have them",
+                    where));
   }
-  const long frame = row.integer(0);
-  if (frame < 0) row.fail(fmt::format("frame {} is negative", frame));
+  if (v[0] < 0.0 || v[0] != std::floor(v[0]) || v[1] != std::floor(v[1])) {
+    throw InputError(fmt::format("{}: frame {} and id {} must be whole numbers, the frame not negative",
+                                 where, v[0], v[1]));
+  }
   ObjectRecord record;
-  record.frame = static_cast<std::size_t>(frame);
-  record.track_id = row.integer(1);
-  record.type = lower(row.text(2));
-  record.truncation = static_cast<int>(row.number(3));
-  record.occlusion = static_cast<int>(row.number(4));
-  record.image_box = {row.number(6), row.number(7), row.number(8), row.number(9)};
-  record.box = level_box(row);
-  if (row.size() == kResultFields) record.score = row.number(17);
+  record.frame = static_cast<std::size_t>(v[0]);
+  record.track_id = static_cast<long>(v[1]);
+  record.type = lower(type);
+  record.truncation = static_cast<int>(v[2]);
+  record.occlusion = static_cast<int>(v[3]);
+  record.image_box = {v[5], v[6], v[7], v[8]};
+  record.box = level_box({v[9], v[10], v[11]}, {v[12], v[13], v[14]}, v[15]);
+  if (v.size() == kResultNumbers) record.score = v[16];
   return record;
 }
 
 }  // namespace
 
 std::vector<ObjectRecord> read_kitti_tracks(const std::filesystem::path& file) {
-  const TextTable table(file);
+  const std::vector<std::string> lines = read_lines(file);
   std::vector<ObjectRecord> records;
-  records.reserve(table.rows().size());
-  for (const TextRow& row : table.rows()) records.push_back(object_record(row));
+  records.reserve(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    records.push_back(object_record(lines[i], fmt::format("{}:{}", file.string(), i + 1)));
+  }
   return records;
 }
 
