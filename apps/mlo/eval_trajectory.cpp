@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "mlo/core/error.hpp"
 #include "mlo/evaluation/plot.hpp"
 #include "mlo/evaluation/trajectory_error.hpp"
+#include "mlo/io/atomic_file.hpp"
 #include "mlo/io/calibration.hpp"
 #include "mlo/io/pose_files.hpp"
 #include "mlo/io/trajectory_file.hpp"
@@ -222,20 +222,13 @@ std::vector<PlotPanel> plot_panels(const std::vector<Evaluation>& evaluations, c
   return panels;
 }
 
-void write_plot(const std::vector<Evaluation>& evaluations, const Options& options) {
-  std::ofstream file(options.plot, std::ios::binary);
-  file << svg_plot(plot_panels(evaluations, options.plane)) << std::flush;
-  if (!file)
-    throw InputError(
-        fmt::format("{}: cannot be written; check folder, rights and space", options.plot.string()));
-}
-
 void run(const Options& options) {
   const PoseList truth = read_truth(options);
   std::vector<Evaluation> evaluations;
   for (const std::filesystem::path& path : options.estimates)
     evaluations.push_back(evaluate(truth, path, options));
-  if (!options.plot.empty()) write_plot(evaluations, options);
+  if (!options.plot.empty())
+    write_file_atomically(options.plot, svg_plot(plot_panels(evaluations, options.plane)));
   if (!options.json) return print_table(truth, evaluations, options);
   nlohmann::ordered_json json = {{"truth", options.truth.string()},
                                  {"estimates", nlohmann::ordered_json::array()}};

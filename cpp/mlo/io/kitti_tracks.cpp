@@ -1,14 +1,14 @@
 #include "mlo/io/kitti_tracks.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
+#include "mlo/io/kitti_box.hpp"
+#include "mlo/io/text.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -18,21 +18,9 @@ namespace {
 constexpr std::size_t kLabelNumbers = 16;
 constexpr std::size_t kResultNumbers = 17;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-// From camera axes (x right, y down, z ahead), where rotation_y turns about y and is 0 along x.
-Box3d level_box(const Eigen::Vector3d& size_hwl_m, const Eigen::Vector3d& bottom_camera_m,
-                double rotation_y_rad) {
-  Box3d box;
-  box.size_lwh_m = size_hwl_m.reverse();
-  box.center_lidar_m = {bottom_camera_m.z(), -bottom_camera_m.x(),
-                        -(bottom_camera_m.y() - 0.5 * size_hwl_m[0])};
-  box.yaw_rad = -rotation_y_rad - 0.5 * std::numbers::pi;
-  return box;
+// A lidar's axes (x ahead, y left, z up) about the camera's centre.
+SE3 T_camera0_level() {
+  return {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Eigen::Vector3d::Zero()};
 }
 
 ObjectRecord object_record(const std::string& line, const std::string& where) {
@@ -57,11 +45,16 @@ ObjectRecord object_record(const std::string& line, const std::string& where) {
   ObjectRecord record;
   record.frame = static_cast<std::size_t>(v[0]);
   record.track_id = static_cast<long>(v[1]);
-  record.type = lower(type);
+  record.type = to_lower(type);
   record.truncation = static_cast<int>(v[2]);
   record.occlusion = static_cast<int>(v[3]);
   record.image_box = {v[5], v[6], v[7], v[8]};
-  record.box = level_box({v[9], v[10], v[11]}, {v[12], v[13], v[14]}, v[15]);
+  const KittiBox box{.bottom_camera0_m = {v[12], v[13], v[14]},
+                     .height_m = v[9],
+                     .width_m = v[10],
+                     .length_m = v[11],
+                     .rotation_y_rad = v[15]};
+  record.box = box_in_lidar(box, T_camera0_level());
   if (v.size() == kResultNumbers) record.score = v[16];
   return record;
 }
