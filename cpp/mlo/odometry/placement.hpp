@@ -8,12 +8,6 @@
 
 namespace mlo {
 
-/// How the points of a scan relate to its reference time.
-struct SweepTiming {
-  bool motion_compensated = false;  ///< points are already where they would be at the reference time
-  double reference_fraction = 0.5;  ///< sweep fraction of the reference time; 1 is the paper's end of sweep
-};
-
 /// Takes measured points of the current scan into the previous scan's lidar frame (at its reference time) by
 /// the increment being estimated; distortion is removed with the same increment: interpolate(delta, 1 + s -
 /// r).
@@ -21,7 +15,7 @@ class Placement {
  public:
   Placement(const SE3& T_previous_current, const SweepTiming& timing)
       : T_previous_current_(T_previous_current) {
-    if (!timing.motion_compensated) motion_.emplace(T_previous_current, timing.reference_fraction);
+    if (!timing.motion_compensated) motion_ = SweepMotion::from_increment(T_previous_current, timing);
   }
 
   Eigen::Vector3d operator()(const FeaturePoint& feature) const {
