@@ -1,16 +1,20 @@
-#include <spdlog/spdlog.h>
-
 #include <exception>
+
+#include <spdlog/spdlog.h>
 
 #include "apps/mlo/commands.hpp"
 #include "mlo/core/error.hpp"
 
 // Exit codes: 0 done; 1 the input or configuration cannot be used; 2 wrong usage; 3 a bug in mlo.
 int main(int argc, char** argv) {
-  CLI::App program{"MLO: multi-object lidar odometry. From the scans of one spinning lidar to trajectories, tracks and maps."};
+  CLI::App program{
+      "MLO: multi-object lidar odometry. From the scans of one spinning lidar to trajectories, tracks and "
+      "maps."};
   program.require_subcommand(1);
   program.set_version_flag("--version", MLO_VERSION);
   program.failure_message(CLI::FailureMessage::help);
+  mlo::apps::add_eval(program);
+  mlo::apps::add_info(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
