@@ -93,8 +93,9 @@ TEST(ReportOn, FindsWhatIsWrong) {
   EXPECT_THAT(report.findings, Contains(HasSubstr("missing scans (3): frame 6, 10-11")));
   EXPECT_THAT(report.findings, Contains(HasSubstr("000004.bin: no valid point")));
   EXPECT_THAT(report.findings, Contains(HasSubstr("000005.bin: 14 bytes")));
-  EXPECT_THAT(report.findings,
-              Contains(HasSubstr("1 scan with over 1 % of NaN or infinite points: frame 7")));
+  EXPECT_THAT(
+      report.findings,
+      Contains(HasSubstr("1 scan with over 1 % of their points NaN, infinite or at the origin: frame 7")));
   EXPECT_THAT(report.findings,
               Contains(HasSubstr("scan with fewer than half of the usual 3840 points: frame 8")));
   EXPECT_THAT(report.findings,

@@ -143,7 +143,7 @@ void judge_scans(const std::vector<ScanSummary>& scans, DatasetReport& report) {
                              const auto all = static_cast<double>(scan.points + scan.invalid_points);
                              return static_cast<double>(scan.invalid_points) > kMuchInvalid * all;
                            }),
-              "with over 1 % of NaN or infinite points");
+              "with over 1 % of their points NaN, infinite or at the origin");
   add_finding(findings,
               frames_where(scans,
                            [&](const ScanSummary& scan) {
