@@ -140,6 +140,22 @@ TEST(ReportOn, NothingReadable) {
   EXPECT_THAT(report.findings, Contains(HasSubstr("2 more scans cannot be read")));
 }
 
+TEST(ReportOnDetections, CountsThoseOfTheScans) {
+  const test::TempFolder folder;
+  for (const int frame : {3, 4}) write_scan(folder, frame, test::to_bin(small_sweep()));
+  const Dataset dataset = open_dataset(folder.path() / "04", {});
+  DetectionList list;
+  const DetectionRecord car;
+  DetectionRecord cyclist;
+  cyclist.detection.object_class = ObjectClass::cyclist;
+  list.by_frame = {{0, {car}}, {4, {car, car, cyclist}}};
+  const DetectionReport report = report_on_detections(dataset, list);
+  EXPECT_EQ(report.boxes, 3U);
+  EXPECT_EQ(report.scans, 1U);
+  EXPECT_THAT(report.by_class, ElementsAre(testing::Pair("car", 2U), testing::Pair("cyclist", 1U)));
+  EXPECT_EQ(report_on_detections(dataset, {}).boxes, 0U);
+}
+
 TEST(ReportOn, RealScansWithoutFindings) {
   const auto data = test::real_data();
   if (!data) GTEST_SKIP() << test::kNoRealData;
