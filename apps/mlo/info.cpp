@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,17 +17,20 @@ namespace {
 constexpr std::size_t kSampleSize = 100;
 
 constexpr const char* kExamples = R"(
-Recognised: KITTI odometry, raw and tracking at any level of their folders, and plain folders of .bin, .pcd and .ply.
+Recognised: KITTI odometry, raw and tracking at any level of their folders, and plain folders of .bin, .pcd
+and .ply files.
 Reads 100 scans, evenly spread, unless --all is given.
 
 Examples:
   mlo info kitti_odometry --sequence 04
   mlo info 2011_09_26/2011_09_26_drive_0005_sync --all
+  mlo info kitti_tracking --sequence 0000 --detections detections/pointrcnn_car
   mlo info scans --format folder --json > scans.json)";
 
 struct Options {
   std::filesystem::path folder;
   OpenOptions open;
+  std::vector<std::filesystem::path> detections;
   bool all = false;
   bool json = false;
 };
@@ -39,7 +43,24 @@ std::vector<std::string> calibrations(const Dataset& dataset) {
   return names;
 }
 
-void print_text(const Dataset& dataset, const DatasetReport& report) {
+// What the user names, else the labels that come along.
+std::optional<DetectionReport> detections_of(const Dataset& dataset, const Options& options) {
+  std::vector<std::filesystem::path> paths = options.detections;
+  if (paths.empty() && !dataset.labels.empty()) paths.push_back(dataset.labels);
+  if (paths.empty()) return std::nullopt;
+  const DetectionList list = read_detections(paths, dataset.calibration, {.sequence = dataset.sequence});
+  return report_on_detections(dataset, list);
+}
+
+std::string detection_text(const DetectionReport& report) {
+  std::string classes;
+  for (const auto& [name, count] : report.by_class) classes += fmt::format(", {} {}", count, name);
+  return fmt::format("{} in {} scans{}; {} of {} boxes looked at hold points", report.boxes, report.scans,
+                     classes, report.check.boxes_with_points, report.check.boxes);
+}
+
+void print_text(const Dataset& dataset, const DatasetReport& report,
+                const std::optional<DetectionReport>& detections) {
   const auto row = [](const char* name, const std::string& text) { fmt::print("{:<14}{}\n", name, text); };
   const auto spread = [](const Spread& s, const char* format) {
     return fmt::format(fmt::runtime(fmt::format("{0} ... {0} ... {0}", format)), s.min, s.median, s.max);
@@ -65,11 +86,22 @@ void print_text(const Dataset& dataset, const DatasetReport& report) {
                          : "none");
   row("truth", report.poses > 0 ? fmt::format("{} poses, {:.1f} m", report.poses, report.path_m) : "none");
   row("labels", dataset.labels.empty() ? "none" : dataset.labels.string());
+  row("detections", detections ? detection_text(*detections) : "none");
   row("looks wrong", report.findings.empty() ? "nothing" : "");
   for (const std::string& finding : report.findings) fmt::print("  - {}\n", finding);
 }
 
-void print_json(const Dataset& dataset, const DatasetReport& report) {
+nlohmann::ordered_json json_of(const std::optional<DetectionReport>& detections) {
+  if (!detections) return nullptr;
+  return {{"boxes", detections->boxes},
+          {"scans", detections->scans},
+          {"by_class", detections->by_class},
+          {"boxes_checked", detections->check.boxes},
+          {"boxes_with_points", detections->check.boxes_with_points}};
+}
+
+void print_json(const Dataset& dataset, const DatasetReport& report,
+                const std::optional<DetectionReport>& detections) {
   using Json = nlohmann::ordered_json;
   const auto spread = [](const Spread& s) {
     return Json{{"min", s.min}, {"median", s.median}, {"max", s.max}};
@@ -99,17 +131,20 @@ void print_json(const Dataset& dataset, const DatasetReport& report) {
                      {"truth_poses", report.poses},
                      {"truth_path_m", report.path_m},
                      {"labels", dataset.labels.string()},
+                     {"detections", json_of(detections)},
                      {"findings", report.findings}};
   fmt::print("{}\n", json.dump(2));
 }
 
 void run(const Options& options) {
   const Dataset dataset = open_dataset(options.folder, options.open);
-  const DatasetReport report = report_on(dataset, options.all ? 0 : kSampleSize);
+  DatasetReport report = report_on(dataset, options.all ? 0 : kSampleSize);
+  const std::optional<DetectionReport> detections = detections_of(dataset, options);
+  if (detections && !detections->check.problem.empty()) report.findings.push_back(detections->check.problem);
   if (options.json) {
-    print_json(dataset, report);
+    print_json(dataset, report, detections);
   } else {
-    print_text(dataset, report);
+    print_text(dataset, report, detections);
   }
 }
 
@@ -124,6 +159,10 @@ void add_info(CLI::App& program) {
                       "auto, kitti_odometry, kitti_raw, kitti_tracking or folder (default auto)");
   command->add_option("--sequence", options->open.sequence,
                       "Which sequence, by name or number, if the folder holds several");
+  command
+      ->add_option("--detections", options->detections,
+                   "Files or folders of detections to count and to check (default: labels that come along)")
+      ->type_name("PATH");
   command->add_flag("--all", options->all, "Read every scan");
   command->add_flag("--json", options->json, "Print JSON");
   command->footer(kExamples);

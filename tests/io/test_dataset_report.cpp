@@ -93,8 +93,9 @@ TEST(ReportOn, FindsWhatIsWrong) {
   EXPECT_THAT(report.findings, Contains(HasSubstr("missing scans (3): frame 6, 10-11")));
   EXPECT_THAT(report.findings, Contains(HasSubstr("000004.bin: no valid point")));
   EXPECT_THAT(report.findings, Contains(HasSubstr("000005.bin: 14 bytes")));
-  EXPECT_THAT(report.findings,
-              Contains(HasSubstr("1 scan with over 1 % of NaN or infinite points: frame 7")));
+  EXPECT_THAT(
+      report.findings,
+      Contains(HasSubstr("1 scan with over 1 % of their points NaN, infinite or at the origin: frame 7")));
   EXPECT_THAT(report.findings,
               Contains(HasSubstr("scan with fewer than half of the usual 3840 points: frame 8")));
   EXPECT_THAT(report.findings,
@@ -137,6 +138,22 @@ TEST(ReportOn, NothingReadable) {
   EXPECT_EQ(report.scans_unreadable, 12U);
   EXPECT_EQ(report.points.max, 0.0);
   EXPECT_THAT(report.findings, Contains(HasSubstr("2 more scans cannot be read")));
+}
+
+TEST(ReportOnDetections, CountsThoseOfTheScans) {
+  const test::TempFolder folder;
+  for (const int frame : {3, 4}) write_scan(folder, frame, test::to_bin(small_sweep()));
+  const Dataset dataset = open_dataset(folder.path() / "04", {});
+  DetectionList list;
+  const DetectionRecord car;
+  DetectionRecord cyclist;
+  cyclist.detection.object_class = ObjectClass::cyclist;
+  list.by_frame = {{0, {car}}, {4, {car, car, cyclist}}};
+  const DetectionReport report = report_on_detections(dataset, list);
+  EXPECT_EQ(report.boxes, 3U);
+  EXPECT_EQ(report.scans, 1U);
+  EXPECT_THAT(report.by_class, ElementsAre(testing::Pair("car", 2U), testing::Pair("cyclist", 1U)));
+  EXPECT_EQ(report_on_detections(dataset, {}).boxes, 0U);
 }
 
 TEST(ReportOn, RealScansWithoutFindings) {

@@ -146,6 +146,19 @@ TEST(PlainFolder, EqualTimesAreNone) {
               1e-6);  // straight ahead, half a turn after the start
 }
 
+TEST(PlainFolder, PointsAtTheOriginAreNoReturns) {
+  const test::TempFolder folder;
+  folder.write(
+      "0.pcd",
+      "VERSION 0.7\nFIELDS x y z time\nSIZE 4 4 4 8\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA ascii\n5 1 0 0.0\n0 0 0 0.05\n5 2 0 0.1\n");
+  const ScanReading reading = open_dataset(folder.path(), {}).scans->read(0);
+  ASSERT_TRUE(reading.scan.has_value()) << reading.problem;
+  EXPECT_EQ(reading.invalid_points, 1U);
+  EXPECT_EQ(reading.scan->points.size(), 2U);
+  EXPECT_THAT(fractions(*reading.scan), ElementsAre(0.0, 1.0));
+}
+
 TEST(PlainFolder, HasNoSequence) {
   const test::TempFolder folder;
   folder.write("0.bin", small_bin());

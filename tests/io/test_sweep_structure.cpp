@@ -115,6 +115,14 @@ TEST(RecoverRings, NumbersWhatIsLeftWhenRingsAreAbsent) {
   EXPECT_EQ(recovery.rings, 13U);
 }
 
+TEST(RecoverRings, RejectsTheWrongSensor) {
+  std::vector<Point> points = make_sweep({.sensor = hdl64e()});
+  const RingRecovery recovery = recover_rings(points, even_sensor(32));
+  EXPECT_FALSE(recovery.recovered);
+  EXPECT_EQ(recovery.problem, "64 scan lines, but the sensor has 32");
+  EXPECT_EQ(points.front().ring, Point::kNoRing);
+}
+
 TEST(RecoverRings, RejectsOtherOrders) {
   const std::vector<Point> sweep = make_sweep({.sensor = even_sensor(16)});
   std::vector<Point> shuffled = sweep;

@@ -17,7 +17,7 @@ struct ScanReading {
   std::optional<Scan> scan;
   std::string problem;             ///< file, what is wrong and the remedy; empty when there is a scan
   bool missing = false;            ///< there is no file at all
-  std::size_t invalid_points = 0;  ///< points with NaN or infinite coordinates that were left out
+  std::size_t invalid_points = 0;  ///< left out: coordinates NaN, infinite, or all zero (no return)
 };
 
 /// A sequence of scans on disk. Small, immutable, read by index from any thread.

@@ -143,7 +143,7 @@ void judge_scans(const std::vector<ScanSummary>& scans, DatasetReport& report) {
                              const auto all = static_cast<double>(scan.points + scan.invalid_points);
                              return static_cast<double>(scan.invalid_points) > kMuchInvalid * all;
                            }),
-              "with over 1 % of NaN or infinite points");
+              "with over 1 % of their points NaN, infinite or at the origin");
   add_finding(findings,
               frames_where(scans,
                            [&](const ScanSummary& scan) {
@@ -215,6 +215,41 @@ DatasetReport report_on(const Dataset& dataset, std::size_t max_scans) {
   report.sweep_fraction = combined(scans, &ScanSummary::sweep_fraction);
   judge_scans(scans, report);
   judge_units(report);
+  return report;
+}
+
+DetectionReport report_on_detections(const Dataset& dataset, const DetectionList& detections) {
+  constexpr std::size_t kScansChecked = 10;
+  DetectionReport report;
+  std::vector<std::size_t> with_boxes;
+  const auto boxes_of = [&](std::size_t index) {
+    const double stamp_s = index < dataset.stamps_s.size() ? dataset.stamps_s[index] : kNoStamp;
+    return detections.at(dataset.scans->frame(index), stamp_s);
+  };
+  for (std::size_t index = 0; index < dataset.scans->size(); ++index) {
+    const std::span<const DetectionRecord> records = boxes_of(index);
+    if (!records.empty()) with_boxes.push_back(index);
+    report.boxes += records.size();
+    for (const DetectionRecord& record : records) {
+      ++report.by_class[std::string(to_string(record.detection.object_class))];
+    }
+  }
+  report.scans = with_boxes.size();
+
+  const std::vector<std::size_t> places = sample(with_boxes.size(), kScansChecked);
+  std::vector<ScanReading> readings(places.size());
+  parallel_for_each_index(places.size(),
+                          [&](std::size_t k) { readings[k] = dataset.scans->read(with_boxes[places[k]]); });
+  std::vector<ScanWithDetections> scans;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!readings[k].scan) continue;
+    ScanWithDetections& scan = scans.emplace_back();
+    scan.points = readings[k].scan->points;
+    for (const DetectionRecord& record : boxes_of(with_boxes[places[k]])) {
+      scan.detections.push_back(record.detection);
+    }
+  }
+  report.check = check_detections(scans, dataset.calibration);
   return report;
 }
 

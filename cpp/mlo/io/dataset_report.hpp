@@ -1,10 +1,12 @@
 #pragma once
 
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "mlo/io/dataset.hpp"
+#include "mlo/io/detection_check.hpp"
+#include "mlo/io/detections.hpp"
 
 namespace mlo {
 
@@ -49,5 +51,15 @@ struct DatasetReport {
 
 /// @param max_scans  how many scans to read, evenly spread, first and last included; 0 reads all
 DatasetReport report_on(const Dataset& dataset, std::size_t max_scans);
+
+/// Which objects belong to the scans of a dataset, and whether they fit them.
+struct DetectionReport {
+  std::size_t boxes = 0;                        ///< of all scans
+  std::size_t scans = 0;                        ///< with boxes
+  std::map<std::string, std::size_t> by_class;  ///< boxes of each class, by its name
+  DetectionCheck check;                         ///< on up to ten scans with boxes, evenly spread
+};
+
+DetectionReport report_on_detections(const Dataset& dataset, const DetectionList& detections);
 
 }  // namespace mlo

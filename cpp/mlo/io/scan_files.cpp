@@ -42,6 +42,21 @@ bool set_times(Scan& scan, const std::vector<double>& times_s) {
   return true;
 }
 
+// Some drivers write a point at the origin where there was no return. Returns how many were taken out.
+std::size_t drop_points_at_origin(PointCloudFile& content) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < content.points.size(); ++i) {
+    if (content.points[i].p_lidar.isZero(0.0F)) continue;
+    content.points[kept] = content.points[i];
+    if (!content.times_s.empty()) content.times_s[kept] = content.times_s[i];
+    ++kept;
+  }
+  const std::size_t dropped = content.points.size() - kept;
+  content.points.resize(kept);
+  if (!content.times_s.empty()) content.times_s.resize(kept);
+  return dropped;
+}
+
 }  // namespace
 
 ScanFiles::ScanFiles(std::vector<ScanFile> files, ScanFileTraits traits)
@@ -57,10 +72,10 @@ ScanReading ScanFiles::read(std::size_t index) const {
   }
   try {
     PointCloudFile content = read_points(file.path);
-    reading.invalid_points = content.invalid_points;
+    reading.invalid_points = content.invalid_points + drop_points_at_origin(content);
     if (content.points.empty()) {
-      reading.problem = fmt::format("{}: no valid point ({} with NaN or infinite coordinates)",
-                                    file.path.string(), content.invalid_points);
+      reading.problem = fmt::format("{}: no valid point ({} are NaN, infinite or at the origin)",
+                                    file.path.string(), reading.invalid_points);
       return reading;
     }
     Scan scan{.points = std::move(content.points),

@@ -338,6 +338,7 @@ RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor) 
   constexpr std::size_t kFewestPoints = 16;
   constexpr std::size_t kMostLines = 1024;
   constexpr double kMostVarianceWithin = 0.25;
+  constexpr double kMostSplit = 1.25;
   if (points.size() < kFewestPoints) return no_rings(points, "too few points to see scan lines in");
   const Angles angles = measure_angles(points);
   const int direction = storage_direction(angles.azimuth);
@@ -350,11 +351,16 @@ RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor) 
     return no_rings(points,
                     fmt::format("{} wraps of the azimuth: not stored line by line", by_azimuth.size()));
   }
+  const auto sensor_rings = static_cast<std::size_t>(sensor.rings);
+  if (sensor_rings > 0 && static_cast<double>(by_azimuth.size()) > kMostSplit * sensor.rings) {
+    return no_rings(points,
+                    fmt::format("{} scan lines, but the sensor has {}", by_azimuth.size(), sensor_rings));
+  }
   std::vector<Line> lines = by_azimuth;
   refine_ends(lines, angles, cut);
   std::size_t corrected = moved_points(by_azimuth, lines);
   measure_slopes(lines, angles.slope);
-  join_split_lines(lines, static_cast<std::size_t>(sensor.rings));
+  join_split_lines(lines, sensor_rings);
   if (lines.size() < 2 || variance_within(lines, angles.slope) > kMostVarianceWithin) {
     return no_rings(points, "the vertical angle contradicts the lines that the azimuth shows");
   }
