@@ -18,11 +18,14 @@ namespace {
 /// is the height that so many of them do not reach.
 constexpr double kShareBelow = 0.05;
 constexpr double kShareBelowNearby = 0.2;
+/// A plane is fitted to about so many points of a zone, evenly chosen; more cost time without changing it.
+constexpr std::size_t kFitPoints = 400;
+constexpr std::size_t kFitPointsNearby = 40;
 /// Zones that tell the ground around the sensor end here [m].
 constexpr float kNearby = 15.0F;
-/// Ground points must spread this much across their main direction to tilt a plane [m]; less is one scan
-/// line.
-constexpr float kMinSpread = 0.3F;
+/// The tilt of the plane before weighs as much as points that spread so far from each other [m]. It settles
+/// the tilt where points are few, close together or all on one scan line, and steadies it elsewhere.
+constexpr float kPriorSpread = 0.5F;
 
 float tan_deg(double degrees) {
   return static_cast<float>(std::tan(degrees * std::numbers::pi / 180.0));
@@ -32,9 +35,9 @@ float cos_deg(double degrees) {
   return static_cast<float>(std::cos(degrees * std::numbers::pi / 180.0));
 }
 
-/// Sums from which mean and covariance of points near `origin` follow.
+/// Sums from which mean and covariance of points follow.
 struct Moments {
-  Eigen::Vector3f origin;
+  Eigen::Vector3f origin;  ///< somewhere among the points, so that single precision suffices
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f sum_of_squares = Eigen::Matrix3f::Zero();
   std::size_t count = 0;
@@ -47,19 +50,28 @@ struct Moments {
   }
 };
 
-/// Plane through the points by PCA. Points along one line leave its tilt open: then that of `prior` is kept.
-GroundPlane fit_plane(const Moments& moments, const GroundPlane& prior) {
+/// Plane through the points by PCA, its tilt drawn towards that of the plane before; nothing if the points
+/// lie too far from it to be ground (the foot of a wall or hedge together with what is before it).
+std::optional<GroundPlane> fit_plane(const Moments& moments, const GroundPlane& before,
+                                     double max_roughness_m) {
   const float n = static_cast<float>(moments.count);
-  const Eigen::Vector3f offset = moments.sum / n;
-  const Eigen::Matrix3f covariance = moments.sum_of_squares / n - offset * offset.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(covariance);
-  GroundPlane plane = prior;
-  if (eigen.eigenvalues()[1] > kMinSpread * kMinSpread) {
-    plane.normal = eigen.eigenvectors().col(0);
-    if (plane.normal.z() < 0.0F) plane.normal = -plane.normal;
-  }
-  plane.offset_m = -plane.normal.dot(moments.origin + offset);
+  const Eigen::Vector3f mean = moments.sum / n;
+  const Eigen::Matrix3f covariance = moments.sum_of_squares / n - mean * mean.transpose();
+  const Eigen::Matrix3f along_before =
+      Eigen::Matrix3f::Identity() - before.normal * before.normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(covariance +
+                                                             kPriorSpread * kPriorSpread * along_before);
+  if (eigen.eigenvalues()[0] > max_roughness_m * max_roughness_m) return std::nullopt;
+  GroundPlane plane{.normal = eigen.eigenvectors().col(0)};
+  if (plane.normal.z() < 0.0F) plane.normal = -plane.normal;
+  plane.offset_m = -plane.normal.dot(moments.origin + mean);
   return plane;
+}
+
+/// Every few of the points, about `count` of them.
+void append_sample(std::span<const ZonePoint> zone, std::size_t count, std::vector<Eigen::Vector3f>& sample) {
+  const std::size_t step = std::max<std::size_t>(1, zone.size() / count);
+  for (std::size_t i = 0; i < zone.size(); i += step) sample.push_back(zone[i].p_lidar);
 }
 
 /// The value that the given share of the values does not reach; they must not be empty.
@@ -70,54 +82,70 @@ float quantile(std::vector<float>& values, double share) {
 }
 
 /// Height of the lowest points within +-gate of the plane; nothing if there are too few within.
-std::optional<float> lowest_height(std::span<const ZonePoint> zone, const GroundPlane& plane, float gate,
-                                   std::size_t min_points) {
+std::optional<float> lowest_height(std::span<const Eigen::Vector3f> zone, const GroundPlane& plane,
+                                   float gate, std::size_t min_points) {
   std::vector<float> heights;
   heights.reserve(zone.size());
-  for (const ZonePoint& point : zone) {
-    const float height = plane.height(point.p_lidar);
+  for (const Eigen::Vector3f& p : zone) {
+    const float height = plane.height(p);
     if (std::abs(height) < gate) heights.push_back(height);
   }
   if (heights.size() < min_points) return std::nullopt;
   return quantile(heights, kShareBelow);
 }
 
-/// Iterative PCA in one zone, begun with the points up to seed height above the lowest ones within +-gate of
-/// the prior; nothing if too few are left.
-std::optional<GroundPlane> fit_zone(std::span<const ZonePoint> zone, const GroundPlane& prior, float gate,
-                                    const GroundConfig& config) {
-  const auto min_points = static_cast<std::size_t>(config.min_zone_points);
-  const auto max_distance = static_cast<float>(config.max_distance_m);
-  const std::optional<float> lowest = lowest_height(zone, prior, gate, min_points);
-  if (!lowest) return std::nullopt;
-  GroundPlane plane = prior;
-  float from = *lowest - max_distance;
-  float to = *lowest + static_cast<float>(config.seed_height_m);
-  for (int i = 0; i <= config.iterations; ++i) {
-    Moments moments{.origin = zone.front().p_lidar};
-    for (const ZonePoint& point : zone) {
-      const float height = plane.height(point.p_lidar);
-      if (height > from && height < to) moments.add(point.p_lidar);
-    }
-    if (moments.count < min_points) return std::nullopt;
-    plane = fit_plane(moments, prior);
-    from = -max_distance;
-    to = max_distance;
+/// The points from `from` to `to` above the plane; empty if they are too few for a plane.
+std::optional<Moments> moments_between(std::span<const Eigen::Vector3f> zone, const GroundPlane& plane,
+                                       float from, float to, std::size_t min_points) {
+  if (zone.empty()) return std::nullopt;
+  Moments moments{.origin = zone.front()};
+  for (const Eigen::Vector3f& p : zone) {
+    const float height = plane.height(p);
+    if (height > from && height < to) moments.add(p);
   }
-  return plane;
+  if (moments.count < min_points) return std::nullopt;
+  return moments;
 }
 
-/// The gate around the expected ground that lets a zone bend and step by what is allowed.
-float gate_of(float depth, const GroundConfig& config) {
-  return static_cast<float>(config.max_step_m) + depth * tan_deg(config.max_bend_deg);
+/// Iterative PCA in one zone, begun with the points up to seed height above the lowest ones within +-gate of
+/// the plane before; nothing if too few are left or they give no plane.
+std::optional<GroundPlane> fit_zone(std::span<const Eigen::Vector3f> zone, const GroundPlane& before,
+                                    float gate, const GroundConfig& config) {
+  const auto min_points = static_cast<std::size_t>(config.min_zone_points);
+  const auto distance = static_cast<float>(config.max_distance_m);
+  const std::optional<float> lowest = lowest_height(zone, before, gate, min_points);
+  if (!lowest) return std::nullopt;
+  std::optional<Moments> inliers = moments_between(
+      zone, before, *lowest - distance, *lowest + static_cast<float>(config.seed_height_m), min_points);
+  double max_roughness_m = config.seed_height_m;  // seeds on a slope may still be rough
+  std::optional<GroundPlane> plane;
+  for (int i = 0; i <= config.iterations && inliers; ++i) {
+    plane = fit_plane(*inliers, before, max_roughness_m);
+    if (!plane) return std::nullopt;
+    inliers = moments_between(zone, *plane, -distance, distance, min_points);
+    max_roughness_m = config.max_roughness_m;
+  }
+  return inliers ? plane : std::nullopt;
+}
+
+/// How far the ground is known on the way outwards in a sector.
+struct KnownGround {
+  GroundPlane plane;
+  float reached_m = 0.0F;  ///< range up to which the plane was seen
+};
+
+/// Most that the ground may rise or fall up to the border of a zone, by a step or on the way unseen [m].
+float allowed_step(const KnownGround& known, float border_m, const GroundConfig& config) {
+  return static_cast<float>(config.max_step_m) +
+         std::max(0.0F, border_m - known.reached_m) * tan_deg(config.max_bend_deg);
 }
 
 /// May the ground go on from `before` to `plane`, seen at a point of `before` where the two zones meet?
 bool continues(const GroundPlane& plane, const GroundPlane& before, const GroundPlane& nearby,
-               const Eigen::Vector3f& border, const GroundConfig& config) {
+               const Eigen::Vector3f& border, float max_step_m, const GroundConfig& config) {
   return plane.normal.dot(before.normal) >= cos_deg(config.max_bend_deg) &&
          plane.normal.dot(nearby.normal) >= cos_deg(config.max_slope_deg) &&
-         std::abs(plane.height(border)) <= static_cast<float>(config.max_step_m);
+         std::abs(plane.height(border)) <= max_step_m;
 }
 
 /// The point of the plane above or below a place on the level.
@@ -149,16 +177,14 @@ std::optional<GroundPlane> fit_nearby(const PolarZones& zones, const GroundConfi
   const std::optional<float> height = nearby_height(zones, config);
   if (!height) return std::nullopt;
   const GroundPlane level{.offset_m = -*height};
-  std::vector<ZonePoint> near_points;
+  std::vector<Eigen::Vector3f> sample;
   for (std::size_t sector = 0; sector < zones.num_sectors(); ++sector) {
     for (std::size_t z = 0; z < zones.num_zones() && zones.far_edge_m(z) <= kNearby; ++z) {
-      const std::span<const ZonePoint> zone = zones.points(sector, z);
-      near_points.insert(near_points.end(), zone.begin(), zone.end());
+      append_sample(zones.points(sector, z), kFitPointsNearby, sample);
     }
   }
-  if (near_points.empty()) return level;
-  const float gate = gate_of(kNearby, config);
-  const std::optional<GroundPlane> plane = fit_zone(near_points, level, gate, config);
+  const float gate = kNearby * tan_deg(config.max_slope_deg);
+  const std::optional<GroundPlane> plane = fit_zone(sample, level, gate, config);
   if (plane && plane->normal.z() >= cos_deg(config.max_slope_deg)) return plane;
   return level;
 }
@@ -166,18 +192,23 @@ std::optional<GroundPlane> fit_nearby(const PolarZones& zones, const GroundConfi
 /// Walks one sector from near to far and marks its ground points.
 void segment_sector(const PolarZones& zones, std::size_t sector, const GroundPlane& nearby,
                     const GroundConfig& config, std::vector<std::uint8_t>& is_ground) {
-  GroundPlane plane = nearby;
+  KnownGround known{.plane = nearby};
+  std::vector<Eigen::Vector3f> sample;
   for (std::size_t z = 0; z < zones.num_zones(); ++z) {
     const std::span<const ZonePoint> zone = zones.points(sector, z);
-    if (zone.empty()) continue;
-    const std::optional<GroundPlane> fitted =
-        fit_zone(zone, plane, gate_of(zones.depth_m(z), config), config);
-    const Eigen::Vector3f border = onto_plane(zones.near_border(sector, z), plane);
-    if (fitted && continues(*fitted, plane, nearby, border, config)) plane = *fitted;
+    sample.clear();
+    append_sample(zone, kFitPoints, sample);
+    const Eigen::Vector2f border = zones.near_border(sector, z);
+    const float max_step = allowed_step(known, border.norm(), config);
+    const float gate = max_step + zones.depth_m(z) * tan_deg(config.max_bend_deg);
+    const std::optional<GroundPlane> fitted = fit_zone(sample, known.plane, gate, config);
+    if (fitted &&
+        continues(*fitted, known.plane, nearby, onto_plane(border, known.plane), max_step, config)) {
+      known = {*fitted, zones.far_edge_m(z)};
+    }
     for (const ZonePoint& point : zone) {
-      const bool near_plane =
-          std::abs(plane.height(point.p_lidar)) < static_cast<float>(config.max_distance_m);
-      is_ground[point.index] = near_plane ? 1 : 0;
+      const float height = known.plane.height(point.p_lidar);
+      is_ground[point.index] = std::abs(height) < static_cast<float>(config.max_distance_m) ? 1 : 0;
     }
   }
 }
