@@ -40,7 +40,7 @@ struct RefinementConfig {
   int neighbours = 8;
   double max_thickness_m = 0.1;
   double max_flatness = 0.1;
-  double noise_m = 0.05;
+  double noise_m = 0.07;
   double gate_m = 0.8;
   double gate_without_motion_m = 3.0;
   double final_gate_m = 0.3;

@@ -29,15 +29,22 @@ struct InputConfig {
   }
 };
 
-/// How the motion during a sweep is treated in scans that are not motion-compensated.
+/// The motion during and between sweeps.
 struct MotionConfig {
   double reference_fraction = 0.5;
+  double constant_motion_within_m = 0.1;
+  double constant_motion_within_deg = 0.5;
 
   template <class Visitor>
   void fields(Visitor& visit) {
     visit("reference_fraction", reference_fraction, between(0.0, 1.0),
           "points are brought to this moment of their sweep: 1, its end, as in the paper; the middle halves the "
           "error of a wrong velocity");
+    visit("constant_motion_within_m", constant_motion_within_m, between(0.0, 100.0),
+          "map refinement starts from constant motion while odometry differs from it by less than this, else "
+          "from odometry: smoother against quicker to follow; 0 always takes odometry [m]");
+    visit("constant_motion_within_deg", constant_motion_within_deg, between(0.0, 180.0),
+          "the same for the rotation [deg]");
   }
 };
 

@@ -1,6 +1,7 @@
 #include "mlo/pipeline/pipeline.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,14 @@ PerceptCounts count(const Scan& prepared, const Percept& seen) {
   for (const ObjectPoints& object : seen.objects) counts.object_points += object.points.size();
   counts.ambiguous_points = seen.num_ambiguous_points;
   return counts;
+}
+
+// Scan to scan, an increment is known less well than constant motion predicts it while nothing happens; it
+// starts the refinement where it contradicts the prediction.
+bool agrees(const SE3& T_odometry, const SE3& prediction, const MotionConfig& config) {
+  const SE3 difference = prediction.inverse() * T_odometry;
+  return difference.translation().norm() <= config.constant_motion_within_m &&
+         difference.rotation_angle_rad() <= config.constant_motion_within_deg * std::numbers::pi / 180.0;
 }
 
 // Points of features brought to the reference time and placed by a pose.
@@ -81,10 +90,11 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
     return estimate_increment(seen, prediction, sweep, prepared.frame);
   });
   const SE3 T_odometry = ego.increment.usable() ? ego.increment.T_target_source : prediction;
+  const SE3 T_start = agrees(T_odometry, prediction, config_.motion) ? prediction : T_odometry;
   result.first = state_.empty;
   result.odometry = ego.increment;
   result.consistency = ego.consistency;
-  result.refinement = timed(times, Stage::refinement, [&] { return refine_pose(seen, T_odometry, sweep); });
+  result.refinement = timed(times, Stage::refinement, [&] { return refine_pose(seen, T_start, sweep); });
 
   timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, sweep, result); });
   return result;
