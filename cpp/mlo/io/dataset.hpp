@@ -64,8 +64,8 @@ struct Dataset {
 struct OpenOptions {
   std::string format = "auto";
   std::string sequence = {};  ///< required where the folder holds several
-  std::optional<SensorConfig> sensor =
-      {};  ///< instead of the one that this kind of data is known to come from
+  /// Instead of the one that this kind of data is known to come from.
+  std::optional<SensorConfig> sensor = {};
 };
 
 /// Opens a folder of scans; the layout is recognised from what lies in it.
