@@ -12,13 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SensorConfig known_sensor() {
-  SensorConfig sensor = hdl64e();
-  // Bias of the vertical angles of the benchmark's scans (Deschaud, IMLS-SLAM, ICRA 2018).
-  sensor.vertical_correction_deg = 0.205;
-  return sensor;
-}
-
 // The object benchmark also has velodyne/NNNNNN.bin, but neither of the two files nor a number for a name.
 bool is_sequence(const fs::path& folder) {
   return holds_files(folder / "velodyne", ".bin") &&
@@ -53,7 +46,7 @@ Dataset open_kitti_odometry(const SequenceFolder& sequence, const OpenOptions& o
   dataset.format = "kitti_odometry";
   dataset.sequence = sequence.name;
   dataset.root = sequence.path;
-  dataset.sensor = options.sensor.value_or(known_sensor());
+  dataset.sensor = options.sensor.value_or(hdl64e());
 
   const fs::path times = sequence.path / "times.txt";
   std::vector<double> stamps_s;

@@ -1,5 +1,7 @@
 #include "mlo/pipeline/pipeline.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <numbers>
 #include <utility>
@@ -94,7 +96,9 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
   result.first = state_.empty;
   result.odometry = ego.increment;
   result.consistency = ego.consistency;
-  result.refinement = timed(times, Stage::refinement, [&] { return refine_pose(seen, T_start, sweep); });
+  const bool motion_known = state_.motion_known || ego.increment.usable();
+  result.refinement =
+      timed(times, Stage::refinement, [&] { return refine_pose(seen, T_start, motion_known, sweep); });
 
   timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, sweep, result); });
   return result;
@@ -124,7 +128,7 @@ EgoOdometryResult Pipeline::estimate_increment(const Percept& seen, const SE3& p
   return estimate_ego(seen, state_.reference, guess, timing, config_.odometry, frame);
 }
 
-PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current,
+PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
                                    const SweepTiming& timing) {
   PoseEstimate refined;
   if (state_.empty) return refined;
@@ -143,15 +147,17 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
   const std::vector<RefinementTerm> terms{{ground, &local_maps_.ground, ExpectedShape::plane},
                                           {edges, &local_maps_.edge, ExpectedShape::line},
                                           {rest, &local_maps_.surface, ExpectedShape::plane}};
-  RefinementGuess guess{state_.T_map_lidar, T_previous_current, state_.motion_known, timing};
+  RefinementGuess guess{state_.T_map_lidar, T_previous_current, motion_known, timing};
   refined = refine(terms, guess, config);
 
   if (state_.unplaced && refined.usable()) {
     // Only now is the motion known that distorted the first scan: put it into the map again, and repeat.
     guess.T_previous_current = state_.T_map_lidar.inverse() * refined.T_target_source;
+    guess.motion_known = true;
     clear_maps();
-    insert_in_maps(*state_.unplaced, SweepMotion::from_increment(guess.T_previous_current, timing),
-                   state_.T_map_lidar);
+    const SweepMotion motion = SweepMotion::from_increment(guess.T_previous_current, timing);
+    insert_in_local_maps(*state_.unplaced, motion, state_.T_map_lidar);
+    static_map_.insert(*state_.unplaced, motion, state_.T_map_lidar);
     refined = refine(terms, guess, config);
   }
   return refined;
@@ -162,7 +168,7 @@ void Pipeline::clear_maps() {
   static_map_ = StaticMap(config_.mapping.static_map);
 }
 
-void Pipeline::insert_in_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar) {
+void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar) {
   const bool separate = config_.mapping.local_map.separate_classes;
   LocalMaps& maps = local_maps_;
   const auto insert = [&](const FeatureSet& set, LocalMap& own_map) {
@@ -174,7 +180,9 @@ void Pipeline::insert_in_maps(const Percept& seen, const SweepMotion& motion, co
   insert(seen.edge, maps.edge);
   insert(seen.ground, maps.ground);
   insert(seen.surface, maps.surface);
-  static_map_.insert(seen, motion, T_map_lidar);
+  for (LocalMap* map : {&maps.ground, &maps.edge, &maps.surface}) {
+    map->forget_beyond_radius(T_map_lidar.translation().cast<float>());
+  }
 }
 
 void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry,
@@ -191,15 +199,19 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
   next.T_odom_lidar = state_.T_odom_lidar * T_odometry;
   next.T_map_lidar = T_map_lidar;
   next.T_sweep = interpolate(increment, 1.0 / timing.sweeps_since_previous);
-  if (config_.odometry.enabled) {
-    next.reference = make_reference_scan(seen, motion, static_cast<std::size_t>(config_.odometry.max_candidates));
-  }
-  if (result.localised()) insert_in_maps(seen, motion, T_map_lidar);
   if (result.first && !scan.motion_compensated) next.unplaced = seen;
-  const Eigen::Vector3f center = T_map_lidar.translation().cast<float>();
-  for (LocalMap* map : {&local_maps_.ground, &local_maps_.edge, &local_maps_.surface}) {
-    map->forget_beyond_radius(center);
-  }
+  tbb::parallel_invoke(
+      [&] {
+        if (!config_.odometry.enabled) return;
+        const auto max_candidates = static_cast<std::size_t>(config_.odometry.max_candidates);
+        next.reference = make_reference_scan(seen, motion, max_candidates);
+      },
+      [&] {
+        if (result.localised()) insert_in_local_maps(seen, motion, T_map_lidar);
+      },
+      [&] {
+        if (result.localised()) static_map_.insert(seen, motion, T_map_lidar);
+      });
 
   const SE3 T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);
   result.T_odom_lidar = next.T_odom_lidar * T_reference_stamp;

@@ -52,9 +52,10 @@ class Pipeline {
   SE3 predict(const SweepTiming& timing) const;
   EgoOdometryResult estimate_increment(const Percept& seen, const SE3& prediction, const SweepTiming& timing,
                                        std::size_t frame) const;
-  PoseEstimate refine_pose(const Percept& seen, const SE3& T_previous_current, const SweepTiming& timing);
+  PoseEstimate refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
+                           const SweepTiming& timing);
   void clear_maps();
-  void insert_in_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
+  void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
 
   void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
               FrameResult& result);
