@@ -36,6 +36,7 @@ enum class ShapeModel {
 /// Scan-to-map registration, section III-D-2.
 struct RefinementConfig {
   ShapeModel shape_model = ShapeModel::distribution;
+  bool correct_distortion = true;
   double source_voxel_m = 0.5;
   int neighbours = 8;
   double max_thickness_m = 0.1;
@@ -61,6 +62,9 @@ struct RefinementConfig {
           Choices<ShapeModel>{{"loam", ShapeModel::loam}, {"distribution", ShapeModel::distribution}},
           "loam: lines for edges, planes for the rest, as in the paper; distribution: planes where it is flat, "
           "elsewhere whitened by the spread of the neighbours");
+    visit("correct_distortion", correct_distortion, Anything{},
+          "true: distortion follows the pose while it is refined; false: it is removed once, with odometry's "
+          "increment, as in the paper");
     visit("source_voxel_m", source_voxel_m, between(0.05, 10.0),
           "the scan is thinned to one point per voxel: accuracy against time [m]");
     visit("neighbours", neighbours, between(5, 20), "map points that make a neighbourhood");

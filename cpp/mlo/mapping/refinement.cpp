@@ -149,7 +149,8 @@ class Registration {
   }
 
   NormalEquations linearize(const SE3& T_map_lidar, double gate_m, std::size_t stride) {
-    const SE3 increment = guess_.T_map_lidar_previous.inverse() * T_map_lidar;
+    const SE3 increment = config_.correct_distortion ? guess_.T_map_lidar_previous.inverse() * T_map_lidar
+                                                     : guess_.T_previous_current;
     const SweepMotion motion = SweepMotion::from_increment(increment, guess_.timing);
     const double kernel_m = std::max(config_.kernel_m, guess_.motion_known ? 0.0 : gate_m / 3.0);
     const std::size_t count = (sources_.size() + stride - 1) / stride;

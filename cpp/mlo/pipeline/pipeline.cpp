@@ -152,7 +152,9 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
 
   if (state_.unplaced && refined.usable()) {
     // Only now is the motion known that distorted the first scan: put it into the map again, and repeat.
-    guess.T_previous_current = state_.T_map_lidar.inverse() * refined.T_target_source;
+    if (config.correct_distortion) {
+      guess.T_previous_current = state_.T_map_lidar.inverse() * refined.T_target_source;
+    }
     guess.motion_known = true;
     clear_maps();
     const SweepMotion motion = SweepMotion::from_increment(guess.T_previous_current, timing);
@@ -189,7 +191,8 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
                       const SweepTiming& timing, FrameResult& result) {
   const SE3 T_map_lidar =
       result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
-  const SE3 increment = state_.empty ? SE3() : state_.T_map_lidar.inverse() * T_map_lidar;
+  const bool follow_map = config_.mapping.refinement.correct_distortion;
+  const SE3 increment = follow_map && !state_.empty ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
   const SweepMotion motion = SweepMotion::from_increment(increment, timing);
 
   State next;
