@@ -52,10 +52,11 @@ struct FeatureConfig {
   int ground_per_segment = 4;
   int edges_per_segment = 4;
   int edge_candidates_per_segment = 20;
-  int surfaces_per_segment = 6;
+  int surfaces_per_segment = 5;
   double min_edge_smoothness = 0.01;
   double max_surface_smoothness = 0.005;
   double candidate_voxel_m = 0.2;
+  double no_line_voxel_m = 2.0;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -75,6 +76,10 @@ struct FeatureConfig {
           "a surface feature is at most this rough (c of LOAM); lower keeps smooth walls only");
     visit("candidate_voxel_m", candidate_voxel_m, between(0.01, 5.0),
           "one ground and one surface candidate per voxel of this side [m]; smaller is finer and slower");
+    visit(
+        "no_line_voxel_m", no_line_voxel_m, between(0.1, 20.0),
+        "scans without rings: one ground and one surface feature per voxel of this side [m]; smaller matches "
+        "more and costs time");
   }
 };
 

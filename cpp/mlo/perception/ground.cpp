@@ -15,12 +15,11 @@ namespace mlo {
 namespace {
 
 /// Share of a zone's points that may lie below the ground (multipath): its lowest point representative (LPR)
-/// is the height that so many of them do not reach.
+/// is the height that so many of them do not reach. More where no plane before tells what is too low.
 constexpr double kShareBelow = 0.05;
 constexpr double kShareBelowNearby = 0.2;
 /// A plane is fitted to about so many points of a zone, evenly chosen; more cost time without changing it.
 constexpr std::size_t kFitPoints = 400;
-constexpr std::size_t kFitPointsNearby = 40;
 /// Zones that tell the ground around the sensor end here [m].
 constexpr float kNearby = 15.0F;
 /// The tilt of the plane before weighs as much as points that spread so far from each other [m]. It settles
@@ -48,20 +47,19 @@ struct Moments {
     sum_of_squares += d * d.transpose();
     ++count;
   }
+  Eigen::Matrix3f covariance() const {
+    const auto n = static_cast<float>(count);
+    return sum_of_squares / n - (sum / n) * (sum / n).transpose();
+  }
 };
 
-/// Plane through the points by PCA, its tilt drawn towards that of the plane before; nothing if the points
-/// lie too far from it to be ground (the foot of a wall or hedge together with what is before it).
-std::optional<GroundPlane> fit_plane(const Moments& moments, const GroundPlane& before,
-                                     double max_roughness_m) {
-  const float n = static_cast<float>(moments.count);
-  const Eigen::Vector3f mean = moments.sum / n;
-  const Eigen::Matrix3f covariance = moments.sum_of_squares / n - mean * mean.transpose();
+/// Plane through the points by PCA, its tilt drawn towards that of the plane before.
+GroundPlane fit_plane(const Moments& moments, const GroundPlane& before) {
+  const Eigen::Vector3f mean = moments.sum / static_cast<float>(moments.count);
   const Eigen::Matrix3f along_before =
       Eigen::Matrix3f::Identity() - before.normal * before.normal.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(covariance +
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(moments.covariance() +
                                                              kPriorSpread * kPriorSpread * along_before);
-  if (eigen.eigenvalues()[0] > max_roughness_m * max_roughness_m) return std::nullopt;
   GroundPlane plane{.normal = eigen.eigenvectors().col(0)};
   if (plane.normal.z() < 0.0F) plane.normal = -plane.normal;
   plane.offset_m = -plane.normal.dot(moments.origin + mean);
@@ -117,15 +115,15 @@ std::optional<GroundPlane> fit_zone(std::span<const Eigen::Vector3f> zone, const
   if (!lowest) return std::nullopt;
   std::optional<Moments> inliers = moments_between(
       zone, before, *lowest - distance, *lowest + static_cast<float>(config.seed_height_m), min_points);
-  double max_roughness_m = config.seed_height_m;  // seeds on a slope may still be rough
-  std::optional<GroundPlane> plane;
-  for (int i = 0; i <= config.iterations && inliers; ++i) {
-    plane = fit_plane(*inliers, before, max_roughness_m);
-    if (!plane) return std::nullopt;
-    inliers = moments_between(zone, *plane, -distance, distance, min_points);
-    max_roughness_m = config.max_roughness_m;
+  for (int i = 0; i < config.iterations && inliers; ++i) {
+    inliers = moments_between(zone, fit_plane(*inliers, before), -distance, distance, min_points);
   }
-  return inliers ? plane : std::nullopt;
+  if (!inliers) return std::nullopt;
+  const GroundPlane plane = fit_plane(*inliers, before);
+  // A plane that cuts through the foot of a wall or hedge and what is before it has its points far off.
+  const float variance = plane.normal.dot(inliers->covariance() * plane.normal);
+  if (variance > config.max_roughness_m * config.max_roughness_m) return std::nullopt;
+  return plane;
 }
 
 /// How far the ground is known on the way outwards in a sector.
@@ -154,39 +152,53 @@ Eigen::Vector3f onto_plane(const Eigen::Vector2f& place, const GroundPlane& plan
   return {place.x(), place.y(), z};
 }
 
-/// Height of the ground beneath the sensor: median over the zones around it of their low points, below the
-/// sensor. Zones with multipath or without sight of the ground do not matter while they are fewer than half.
-std::optional<float> nearby_height(const PolarZones& zones, const GroundConfig& config) {
-  std::vector<float> lowest;
-  std::vector<float> heights;
+/// A low point of each zone around the sensor: most of them lie on the ground, some on what hides it, some
+/// below (multipath).
+std::vector<Eigen::Vector3f> low_points(const PolarZones& zones) {
+  const auto is_lower = [](const ZonePoint& a, const ZonePoint& b) { return a.p_lidar.z() < b.p_lidar.z(); };
+  std::vector<Eigen::Vector3f> low;
+  std::vector<ZonePoint> zone;
   for (std::size_t sector = 0; sector < zones.num_sectors(); ++sector) {
-    for (std::size_t z = 0; z < zones.num_zones() && zones.far_edge_m(z) <= kNearby; ++z) {
-      heights.clear();
-      for (const ZonePoint& point : zones.points(sector, z)) heights.push_back(point.p_lidar.z());
-      if (heights.size() < static_cast<std::size_t>(config.min_zone_points)) continue;
-      const float low = quantile(heights, kShareBelowNearby);
-      if (low < 0.0F) lowest.push_back(low);
+    for (std::size_t z = 0; z < zones.num_zones() && zones.near_edge_m(z) < kNearby; ++z) {
+      const std::span<const ZonePoint> points = zones.points(sector, z);
+      if (points.empty()) continue;
+      zone.assign(points.begin(), points.end());
+      const auto at = zone.begin() +
+                      static_cast<std::ptrdiff_t>(kShareBelowNearby * static_cast<double>(zone.size() - 1));
+      std::nth_element(zone.begin(), at, zone.end(), is_lower);
+      low.push_back(at->p_lidar);
     }
   }
-  if (lowest.empty()) return std::nullopt;
-  return quantile(lowest, 0.5);
+  return low;
 }
 
-/// Plane of the ground around the sensor, fitted to the near zones of all sectors together.
+/// Plane of the ground around the sensor: least trimmed squares of the low points, by concentration steps
+/// (Rousseeuw and van Driessen, 2006) from the level plane at their median height. Nothing if no ground lies
+/// below the sensor.
 std::optional<GroundPlane> fit_nearby(const PolarZones& zones, const GroundConfig& config) {
-  const std::optional<float> height = nearby_height(zones, config);
-  if (!height) return std::nullopt;
-  const GroundPlane level{.offset_m = -*height};
-  std::vector<Eigen::Vector3f> sample;
-  for (std::size_t sector = 0; sector < zones.num_sectors(); ++sector) {
-    for (std::size_t z = 0; z < zones.num_zones() && zones.far_edge_m(z) <= kNearby; ++z) {
-      append_sample(zones.points(sector, z), kFitPointsNearby, sample);
-    }
+  constexpr double kShareOnGround = 0.6;
+  constexpr int kSteps = 10;
+  std::vector<Eigen::Vector3f> points = low_points(zones);
+  if (points.empty()) return std::nullopt;
+  std::vector<float> heights;
+  for (const Eigen::Vector3f& p : points) heights.push_back(p.z());
+  const GroundPlane level{.offset_m = -quantile(heights, 0.5)};
+  GroundPlane plane = level;
+  const auto on_ground =
+      static_cast<std::ptrdiff_t>(kShareOnGround * static_cast<double>(points.size() - 1)) + 1;
+  for (int i = 0; i < kSteps; ++i) {
+    std::nth_element(points.begin(), points.begin() + on_ground - 1, points.end(),
+                     [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+                       return std::abs(plane.height(a)) < std::abs(plane.height(b));
+                     });
+    Moments moments{.origin = points.front()};
+    std::for_each(points.begin(), points.begin() + on_ground,
+                  [&](const Eigen::Vector3f& p) { moments.add(p); });
+    plane = fit_plane(moments, level);
   }
-  const float gate = kNearby * tan_deg(config.max_slope_deg);
-  const std::optional<GroundPlane> plane = fit_zone(sample, level, gate, config);
-  if (plane && plane->normal.z() >= cos_deg(config.max_slope_deg)) return plane;
-  return level;
+  if (plane.normal.z() < cos_deg(config.max_slope_deg)) plane = level;
+  if (plane.offset_m <= 0.0F) return std::nullopt;
+  return plane;
 }
 
 /// Walks one sector from near to far and marks its ground points.
