@@ -66,7 +66,7 @@ TEST(OpenDataset, KittiRawFromEveryLevel) {
     const Dataset dataset = open_dataset(folder.path() / level, {});
     EXPECT_EQ(dataset.format, "kitti_raw") << level;
     EXPECT_EQ(dataset.sequence, "2011_09_26_drive_0005_sync");
-    EXPECT_EQ(dataset.sensor.vertical_correction_deg, 0.0);
+    EXPECT_EQ(dataset.sensor.vertical_correction_deg, 0.205);
     EXPECT_THAT(frames(*dataset.scans), ElementsAre(3U));
     const ScanReading reading = dataset.scans->read(0);
     ASSERT_TRUE(reading.scan.has_value()) << reading.problem;

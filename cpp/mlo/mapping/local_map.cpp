@@ -6,6 +6,9 @@
 namespace mlo {
 namespace {
 
+// The map is searched for what to forget each time the robot has moved by this share of the radius.
+constexpr double kForgetEvery = 0.05;
+
 struct Offset {
   int x, y, z;
 };
@@ -78,14 +81,20 @@ void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
 }
 
 void LocalMap::forget_beyond_radius(const Eigen::Vector3f& center_map) {
-  const auto radius2 = static_cast<float>(config_.radius_m * config_.radius_m);
+  const double moved_m = (center_map - last_center_map_).cast<double>().norm();
+  if (moved_m < kForgetEvery * config_.radius_m) return;
+  last_center_map_ = center_map;
+  const VoxelKey center = voxel_key(center_map, inverse_voxel_);
+  const double radius_voxels = config_.radius_m / config_.voxel_m;
   for (auto it = index_.begin(); it != index_.end();) {
-    Voxel& voxel = voxels_[it->second];
-    if ((voxel.points[0] - center_map).squaredNorm() <= radius2) {
+    // By the keys alone: the points lie elsewhere in memory.
+    const VoxelKey& key = it->first;
+    const Eigen::Vector3d steps(key.x - center.x, key.y - center.y, key.z - center.z);
+    if (steps.squaredNorm() <= radius_voxels * radius_voxels) {
       ++it;
       continue;
     }
-    voxel.count = 0;
+    voxels_[it->second].count = 0;
     free_.push_back(it->second);
     it = index_.erase(it);
   }
@@ -120,6 +129,7 @@ void LocalMap::clear() {
   index_.clear();
   voxels_.clear();
   free_.clear();
+  last_center_map_.setZero();
 }
 
 }  // namespace mlo

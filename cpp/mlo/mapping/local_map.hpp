@@ -29,7 +29,8 @@ class LocalMap {
   /// Adds points (map frame [m]) in order; those too near to others of their voxel are left out.
   void insert(std::span<const Eigen::Vector3f> points_map);
 
-  /// Forgets the voxels farther than the configured radius from a place (map frame [m]).
+  /// Forgets the voxels farther than the configured radius from a place (map frame [m]). Does nothing until
+  /// the place has moved by a twentieth of the radius since it last did, so that it may be called every scan.
   void forget_beyond_radius(const Eigen::Vector3f& center_map);
 
   /// The k nearest points within the query's voxel and its 26 neighbours, not beyond gate_m.
@@ -51,6 +52,7 @@ class LocalMap {
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index_;  // key to place in voxels_
   std::vector<Voxel> voxels_;
   std::vector<std::uint32_t> free_;
+  Eigen::Vector3f last_center_map_ = Eigen::Vector3f::Zero();
 };
 
 }  // namespace mlo
