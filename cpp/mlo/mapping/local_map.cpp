@@ -60,24 +60,26 @@ void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
   const auto capacity = static_cast<std::uint32_t>(config_.max_points_per_voxel);
   for (const Eigen::Vector3f& p : points_map) {
     const auto [entry, is_new] = index_.try_emplace(voxel_key(p, inverse_voxel_), 0U);
-    if (is_new) {
-      if (free_.empty()) {
-        entry.value() = static_cast<std::uint32_t>(voxels_.size());
-        voxels_.emplace_back();
-      } else {
-        entry.value() = free_.back();
-        free_.pop_back();
-      }
-    }
-    Voxel& voxel = voxels_[entry->second];
-    if (voxel.count >= capacity) continue;
-    const auto end = voxel.points.begin() + voxel.count;
-    if (std::any_of(voxel.points.begin(), end,
+    if (is_new) entry.value() = take_voxel();
+    Voxel& home = voxel(entry->second);
+    if (home.count >= capacity) continue;
+    const auto end = home.points.begin() + home.count;
+    if (std::any_of(home.points.begin(), end,
                     [&](const Eigen::Vector3f& q) { return (p - q).squaredNorm() < spacing2; })) {
       continue;
     }
-    voxel.points[voxel.count++] = p;
+    home.points[home.count++] = p;
   }
+}
+
+std::uint32_t LocalMap::take_voxel() {
+  if (!free_.empty()) {
+    const std::uint32_t place = free_.back();
+    free_.pop_back();
+    return place;
+  }
+  if (num_taken_ >> kBlockBits == blocks_.size()) blocks_.emplace_back(std::size_t{1} << kBlockBits);
+  return num_taken_++;
 }
 
 void LocalMap::forget_beyond_radius(const Eigen::Vector3f& center_map) {
@@ -94,7 +96,7 @@ void LocalMap::forget_beyond_radius(const Eigen::Vector3f& center_map) {
       ++it;
       continue;
     }
-    voxels_[it->second].count = 0;
+    voxel(it->second).count = 0;
     free_.push_back(it->second);
     it = index_.erase(it);
   }
@@ -116,9 +118,9 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
     if (voxel_d2 >= worst) continue;
     const auto found = index_.find({key.x + step.x, key.y + step.y, key.z + step.z});
     if (found == index_.end()) continue;
-    const Voxel& voxel = voxels_[found->second];
-    for (std::uint32_t i = 0; i < voxel.count; ++i) {
-      keep_nearest(voxel.points[i], (voxel.points[i] - query_map).squaredNorm(), k, nearest);
+    const Voxel& near = voxel(found->second);
+    for (std::uint32_t i = 0; i < near.count; ++i) {
+      keep_nearest(near.points[i], (near.points[i] - query_map).squaredNorm(), k, nearest);
     }
   }
   if (nearest.count > 0 && nearest.squared_distances_m2[0] > gate2) nearest.count = 0;
@@ -127,7 +129,8 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
 
 void LocalMap::clear() {
   index_.clear();
-  voxels_.clear();
+  blocks_.clear();
+  num_taken_ = 0;
   free_.clear();
   last_center_map_.setZero();
 }

@@ -47,10 +47,19 @@ class LocalMap {
     std::uint32_t count = 0;
   };
 
+  // Voxels live in blocks, so that growing never moves them: no scan pays for copying the map.
+  static constexpr std::uint32_t kBlockBits = 10;
+  Voxel& voxel(std::uint32_t place) { return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)]; }
+  const Voxel& voxel(std::uint32_t place) const {
+    return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)];
+  }
+  std::uint32_t take_voxel();
+
   LocalMapConfig config_;
   float inverse_voxel_;
-  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index_;  // key to place in voxels_
-  std::vector<Voxel> voxels_;
+  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index_;  // key to place in the blocks
+  std::vector<std::vector<Voxel>> blocks_;
+  std::uint32_t num_taken_ = 0;  // places that were ever taken; some of them are free again
   std::vector<std::uint32_t> free_;
   Eigen::Vector3f last_center_map_ = Eigen::Vector3f::Zero();
 };

@@ -23,15 +23,24 @@ class StaticMap {
   /// @param T_map_lidar  pose at the motion's reference time
   void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar);
 
-  std::span<const MapPoint> points() const { return points_; }
+  std::size_t size() const;
+  /// All points, in an order that depends only on what was inserted.
+  std::vector<MapPoint> points() const;
 
  private:
   void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
               const SE3& T_map_lidar);
 
+  /// Part of the voxels, chosen by their hash: tables that grow one after the other spread the cost of growing
+  /// over the scans.
+  struct Shard {
+    tsl::robin_set<VoxelKey, VoxelKeyHash> occupied;
+    std::vector<MapPoint> points;
+  };
+  static constexpr std::size_t kNumShards = 64;
+
   float inverse_voxel_;
-  tsl::robin_set<VoxelKey, VoxelKeyHash> occupied_;
-  std::vector<MapPoint> points_;
+  std::vector<Shard> shards_;
 };
 
 }  // namespace mlo
