@@ -21,7 +21,7 @@ struct NearestPoints {
   int count = 0;
 };
 
-/// Points around the robot in a voxel hash; memory is bounded by forget_beyond().
+/// Points around the robot in a voxel hash; memory is bounded by forget_beyond_radius().
 class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config);
@@ -32,8 +32,9 @@ class LocalMap {
   /// Forgets the voxels farther than the configured radius from a place (map frame [m]).
   void forget_beyond_radius(const Eigen::Vector3f& center_map);
 
-  /// The k nearest points within the query's voxel and its 26 neighbours, not beyond gate_m.
-  /// @param k  at most NearestPoints::kMax
+  /// The k nearest points within the query's voxel and its 26 neighbours; none if even the nearest is beyond
+  /// gate_m. The query must be finite.
+  /// @param k  in [1, NearestPoints::kMax]
   NearestPoints nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const;
 
   bool empty() const { return index_.empty(); }
