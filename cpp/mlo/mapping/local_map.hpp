@@ -21,7 +21,7 @@ struct NearestPoints {
   int count = 0;
 };
 
-/// Points around the robot in a voxel hash; memory is bounded by forget_beyond().
+/// Points around the robot in a voxel hash; memory is bounded by forget_beyond_radius().
 class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config);
@@ -33,8 +33,9 @@ class LocalMap {
   /// the place has moved by a twentieth of the radius since it last did, so that it may be called every scan.
   void forget_beyond_radius(const Eigen::Vector3f& center_map);
 
-  /// The k nearest points within the query's voxel and its 26 neighbours, not beyond gate_m.
-  /// @param k  at most NearestPoints::kMax
+  /// The k nearest points within the query's voxel and its 26 neighbours; none if even the nearest is beyond
+  /// gate_m. The query must be finite.
+  /// @param k  in [1, NearestPoints::kMax]
   NearestPoints nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const;
 
   bool empty() const { return index_.empty(); }

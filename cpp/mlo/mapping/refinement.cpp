@@ -118,7 +118,7 @@ class Registration {
       gate_m = std::max(config_.final_gate_m, gate_m * shrink());
       const bool fine = stride == 1;
       const bool settled = gate_m <= config_.final_gate_m && is_small(step.xi, fine ? 1.0 : 20.0);
-      if (fine || settled) report(sums, step, i + 1, result);
+      report(sums, step, i + 1, result);
       if (settled && fine) {
         result.status = EstimateStatus::converged;
         break;
