@@ -54,12 +54,20 @@ void parse_frames(const std::string& text, RunOptions& options) {
   parse(std::string_view(text).substr(colon + 1), options.last_frame);
 }
 
-PipelineConfig configure(const Options& options, const Dataset& dataset) {
+PipelineConfig configure(const Options& options, const SensorConfig& known_sensor) {
   PipelineConfig base;
-  base.sensor = dataset.sensor;
+  base.sensor = known_sensor;
   ConfigArguments arguments = options.config;
   if (!options.roi.empty()) arguments.settings.push_back("input.roi=" + options.roi);
   return resolve(arguments, base);
+}
+
+// Rings and times that the data lacks are recovered with the sensor that the user names, if any.
+Dataset open(const Options& options) {
+  OpenOptions open = options.open;
+  const SensorConfig asked = configure(options, {}).sensor;
+  if (asked.name != SensorConfig{}.name) open.sensor = asked;
+  return open_dataset(options.folder, open);
 }
 
 void print_summary(const RunSummary& summary, const std::filesystem::path& out) {
@@ -81,8 +89,8 @@ void print_summary(const RunSummary& summary, const std::filesystem::path& out) 
 
 void run_command(Options options) {
   parse_frames(options.frames, options.run);
-  const Dataset dataset = open_dataset(options.folder, options.open);
-  const PipelineConfig config = configure(options, dataset);
+  const Dataset dataset = open(options);
+  const PipelineConfig config = configure(options, dataset.sensor);
   std::optional<DetectionList> detections;
   if (!options.detections.empty()) {
     detections = read_detections(options.detections, dataset.calibration, {.sequence = dataset.sequence});

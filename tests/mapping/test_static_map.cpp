@@ -1,5 +1,7 @@
 #include <set>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,11 +29,10 @@ TEST(StaticMap, LabelsPointsAndLeavesObjectsOut) {
   seen.objects.push_back({{}, {object_point}, {at(6.0F, 0.1F, 0.1F)}});
   StaticMap map({});
   map.insert(seen, SweepMotion::none(), SE3());
-  ASSERT_EQ(map.points().size(), 3U);
-  EXPECT_EQ(map.points()[0].label, MapLabel::edge);
-  EXPECT_EQ(map.points()[1].label, MapLabel::ground);
-  EXPECT_EQ(map.points()[2].label, MapLabel::surface);
-  EXPECT_NEAR(map.points()[2].p_map.x(), 3.0F, 1e-6F);
+  std::vector<std::pair<float, MapLabel>> found;  // the order is the map's own
+  for (const MapPoint& point : map.points()) found.emplace_back(point.p_map.x(), point.label);
+  EXPECT_THAT(found, testing::UnorderedElementsAre(std::pair(1.0F, MapLabel::edge), std::pair(2.0F, MapLabel::ground),
+                                                   std::pair(3.0F, MapLabel::surface)));
 }
 
 TEST(StaticMap, KeepsOnePointPerVoxelOverAllScans) {
