@@ -60,7 +60,8 @@ TEST(Run, AMissingFolderIsAnInputErrorWithARemedy) {
       run_program({"run", (folder / "absent").string(), "--out", (folder / "out").string()});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.out, IsEmpty());
-  EXPECT_THAT(run.err, AllOf(HasSubstr((folder / "absent").string()), HasSubstr("give the folder that holds the scans")));
+  EXPECT_THAT(run.err, AllOf(HasSubstr((folder / "absent").string()),
+                             HasSubstr("give the folder that holds the scans")));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
