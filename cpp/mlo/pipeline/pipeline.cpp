@@ -1,11 +1,11 @@
 #include "mlo/pipeline/pipeline.hpp"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include <tbb/parallel_invoke.h>
 
 #include "mlo/mapping/refinement.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
@@ -19,6 +19,8 @@ namespace {
 constexpr double kGapSweeps = 1.5;
 // Predictions over longer gaps than this many sweeps are no better than that.
 constexpr double kMaxPredictedSweeps = 10.0;
+// After so many scans in a row that are not found in the local maps, the maps are not of this place.
+constexpr int kMaxScansLost = 3;
 
 PerceptCounts count(const Scan& prepared, const Percept& seen) {
   PerceptCounts counts;
@@ -88,9 +90,8 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
 
   const SweepTiming sweep = timing(prepared);
   const SE3 prediction = predict(sweep);
-  const EgoOdometryResult ego = timed(times, Stage::odometry, [&] {
-    return estimate_increment(seen, prediction, sweep, prepared.frame);
-  });
+  const EgoOdometryResult ego = timed(
+      times, Stage::odometry, [&] { return estimate_increment(seen, prediction, sweep, prepared.frame); });
   const SE3 T_odometry = ego.increment.usable() ? ego.increment.T_target_source : prediction;
   const SE3 T_start = agrees(T_odometry, prediction, config_.motion) ? prediction : T_odometry;
   result.first = state_.empty;
@@ -165,8 +166,16 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
   return refined;
 }
 
-void Pipeline::clear_maps() {
+void Pipeline::clear_local_maps() {
   for (LocalMap* map : {&local_maps_.ground, &local_maps_.edge, &local_maps_.surface}) map->clear();
+}
+
+bool Pipeline::local_maps_are_empty() const {
+  return local_maps_.ground.empty() && local_maps_.edge.empty() && local_maps_.surface.empty();
+}
+
+void Pipeline::clear_maps() {
+  clear_local_maps();
   static_map_ = StaticMap(config_.mapping.static_map);
 }
 
@@ -187,8 +196,8 @@ void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& moti
   }
 }
 
-void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry,
-                      const SweepTiming& timing, FrameResult& result) {
+void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
+                      FrameResult& result) {
   const SE3 T_map_lidar =
       result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
   const bool follow_map = config_.mapping.refinement.correct_distortion;
@@ -203,6 +212,15 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
   next.T_map_lidar = T_map_lidar;
   next.T_sweep = interpolate(increment, 1.0 / timing.sweeps_since_previous);
   if (result.first && !scan.motion_compensated) next.unplaced = seen;
+  const bool placeable =
+      result.counts.candidates >= static_cast<std::size_t>(config_.mapping.refinement.min_matches);
+  if (!result.localised()) next.scans_lost = state_.scans_lost + (placeable ? 1 : 0);
+  const bool new_local_maps =
+      placeable && !result.localised() && (local_maps_are_empty() || next.scans_lost >= kMaxScansLost);
+  if (new_local_maps) {
+    clear_local_maps();
+    next.scans_lost = 0;
+  }
   tbb::parallel_invoke(
       [&] {
         if (!config_.odometry.enabled) return;
@@ -210,7 +228,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
         next.reference = make_reference_scan(seen, motion, max_candidates);
       },
       [&] {
-        if (result.localised()) insert_in_local_maps(seen, motion, T_map_lidar);
+        if (result.localised() || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
       },
       [&] {
         if (result.localised()) static_map_.insert(seen, motion, T_map_lidar);

@@ -22,7 +22,8 @@ class Pipeline {
   explicit Pipeline(const PipelineConfig& config);
 
   /// Takes the next scan and the boxes that a detector found in it. Scans come in the order of time; gaps are
-  /// allowed.
+  /// allowed. After three scans in a row that are not found in the local maps, these begin anew at the
+  /// predicted pose.
   FrameResult process(const Scan& scan, std::span<const Detection> detections);
 
   /// Poses by constant motion, this many sweeps after the last scan that was processed.
@@ -40,6 +41,7 @@ class Pipeline {
     SE3 T_map_lidar;          ///< the same, refined
     SE3 T_sweep;              ///< motion of the last sweep, from its start to its end
     ReferenceScan reference;  ///< last scan's candidates without distortion
+    int scans_lost = 0;       ///< in a row, up to this one; scans too empty to be placed do not count
     std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
   };
 
@@ -55,6 +57,8 @@ class Pipeline {
   PoseEstimate refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
                            const SweepTiming& timing);
   void clear_maps();
+  void clear_local_maps();
+  bool local_maps_are_empty() const;
   void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
 
   void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,

@@ -1,9 +1,9 @@
 #include "mlo/pipeline/run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <future>
+
+#include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
 #include "mlo/io/atomic_file.hpp"
@@ -96,6 +96,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
   Pipeline pipeline(config);
   std::optional<Eigen::Vector3d> last_position;
   double skipped_in_a_row = 0.0;
+  std::string first_problem;
   const auto read = [&](std::size_t i) {
     return std::async(std::launch::async, [&, i] { return dataset.scans->read(indices[i]); });
   };
@@ -109,6 +110,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
     if (i + 1 < indices.size()) next = read(i + 1);
     summary.invalid_points += reading.invalid_points;
     if (!reading.scan) {
+      if (first_problem.empty()) first_problem = reading.problem;
       skip(dataset.scans->frame(indices[i]), reading.problem, ++skipped_in_a_row, pipeline, output, summary);
     } else {
       skipped_in_a_row = 0.0;
@@ -121,19 +123,21 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
       if (last_position) summary.path_m += (position - *last_position).norm();
       last_position = position;
     }
-    if ((i + 1) % options.checkpoint_scans == 0) output.write_map(pipeline.static_map().points());
+    if (options.checkpoint_scans > 0 && (i + 1) % options.checkpoint_scans == 0) {
+      output.write_map(pipeline.static_map().points());
+    }
     if (on_scan) on_scan(i + 1, indices.size());
   }
   output.write_map(pipeline.static_map().points());
   summary.map_points = pipeline.static_map().size();
   if (summary.skipped > kMaxListedProblems) {
-    summary.warnings.push_back(
-        fmt::format("{} more scans were skipped; per_scan.csv lists all", summary.skipped - kMaxListedProblems));
+    summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
+                                           summary.skipped - kMaxListedProblems));
   }
   write_file_atomically(options.out / "run.json", to_json(dataset, config, summary));
   if (summary.processed == 0 && !summary.interrupted) {
     throw InputError(fmt::format("{}: none of the {} scans could be used; the first problem: {}",
-                                 dataset.root.string(), summary.scans, summary.warnings.back()));
+                                 dataset.root.string(), summary.scans, first_problem));
   }
   return summary;
 }

@@ -18,7 +18,7 @@ struct RunOptions {
   std::filesystem::path out;
   std::size_t first_frame = 0;                             ///< frame numbers, both ends included
   std::size_t last_frame = static_cast<std::size_t>(-1);
-  std::size_t checkpoint_scans = 500;  ///< the static map is saved this often, so that a kill loses little
+  std::size_t checkpoint_scans = 500;  ///< the static map is saved this often, 0 only at the end
 };
 
 /// What a run did; written to run.json.

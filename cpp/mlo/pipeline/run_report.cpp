@@ -1,11 +1,11 @@
 #include "mlo/pipeline/run_report.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 namespace mlo {
 namespace {
@@ -13,7 +13,10 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json to_json_object(const TimeStatistics& times) {
-  return {{"mean_ms", times.mean_ms}, {"p50_ms", times.p50_ms}, {"p99_ms", times.p99_ms}, {"max_ms", times.max_ms}};
+  return {{"mean_ms", times.mean_ms},
+          {"p50_ms", times.p50_ms},
+          {"p99_ms", times.p99_ms},
+          {"max_ms", times.max_ms}};
 }
 
 // Nearest-rank percentile of sorted values.
@@ -79,7 +82,8 @@ std::string to_json(const Dataset& dataset, const PipelineConfig& config, const 
       {"peak_memory_mib", peak_memory_mib()},
       {"warnings", summary.warnings},
       {"configuration", to_yaml(config)}};
-  return report.dump(2) + "\n";
+  // File names need not be UTF-8, which JSON is.
+  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace mlo
