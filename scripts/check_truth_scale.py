@@ -98,8 +98,8 @@ def main():
     print(f"  stated accuracy of the velocity {accuracy:.3f} m/s at {speed:.2f} m/s: {100 * accuracy / speed:.2f} %")
     for name, target in [("truth", truth), ("oxts positions", oxts)]:
         scale, scaled = align(estimate, target, with_scale=True)
-        print(f"  ATE against {name}: {align(estimate, target, with_scale=False)[1]:.3f} m; with the estimate scaled by "
-              f"{scale:.5f}: {scaled:.3f} m")
+        _, rigid = align(estimate, target, with_scale=False)
+        print(f"  ATE against {name}: {rigid:.3f} m; with the estimate scaled by {scale:.5f}: {scaled:.3f} m")
 
 
 if __name__ == "__main__":
