@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Whose scale is it? Compares the length of a KITTI raw drive by three accounts that share little.
+"""Whose scale is it? Compares the length of a KITTI raw drive by three accounts.
 
 The truth integrates the velocity of the oxts unit; the same unit also gives positions (here by KITTI's Mercator
-projection, moved to the lidar); the estimate knows the lidar only. Prints the chord from the first to the last scan by
-each, how accurate the unit itself states its velocity to be, and the ATE before and after a scale is fitted: where
-that removes most of it, and the positions side with the estimate, the scale is the truth's error.
+projection, moved to the lidar); the estimate knows the lidar only. Prints chord and path length by each, how accurate
+the unit states itself to be, and the ATE before and after a scale is fitted. Positions say something about the scale
+only where their stated accuracy is small against the differences.
 """
 
 import argparse
@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 EARTH_RADIUS_M = 6378137.0
-ROLL, PITCH, YAW, NORTH_VELOCITY, EAST_VELOCITY, VELOCITY_ACCURACY = 3, 4, 5, 6, 7, 24
+ROLL, PITCH, YAW, NORTH_VELOCITY, EAST_VELOCITY = 3, 4, 5, 6, 7
+POSITION_ACCURACY, VELOCITY_ACCURACY = 23, 24
 
 
 def read_positions(path):
@@ -66,6 +67,14 @@ def chord(positions):
 
 
 
+def path_length(positions):
+    return np.linalg.norm(np.diff(positions, axis=0), axis=1).sum()
+
+
+def relative(value, reference):
+    return f"{value:.3f} m ({100 * (value / reference - 1):+.2f} %)"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("drive", type=Path, help="..._drive_NNNN_sync, with calib_imu_to_velo.txt beside it")
@@ -81,14 +90,16 @@ def main():
     print(f"{options.drive.name}, scans 0 to {count - 1}")
     for name, positions in [("truth, integrated oxts velocity", truth), ("oxts positions", oxts),
                             ("estimate", estimate)]:
-        print(f"  chord by {name:32} {chord(positions):8.3f} m ({100 * (chord(positions) / chord(truth) - 1):+.2f} %)")
+        print(f"  {name:31} chord {relative(chord(positions), chord(truth))}, "
+              f"path {relative(path_length(positions), path_length(truth))}")
     speed = np.hypot(records[:, NORTH_VELOCITY], records[:, EAST_VELOCITY]).mean()
     accuracy = records[:, VELOCITY_ACCURACY].mean()
+    print(f"  stated accuracy of the positions {records[:, POSITION_ACCURACY].mean():.3f} m")
     print(f"  stated accuracy of the velocity {accuracy:.3f} m/s at {speed:.2f} m/s: {100 * accuracy / speed:.2f} %")
     for name, target in [("truth", truth), ("oxts positions", oxts)]:
         scale, scaled = align(estimate, target, with_scale=True)
-        print(f"  ATE against {name}: {align(estimate, target, with_scale=False)[1]:.3f} m; with the estimate scaled by "
-              f"{scale:.5f}: {scaled:.3f} m")
+        _, rigid = align(estimate, target, with_scale=False)
+        print(f"  ATE against {name}: {rigid:.3f} m; with the estimate scaled by {scale:.5f}: {scaled:.3f} m")
 
 
 if __name__ == "__main__":
