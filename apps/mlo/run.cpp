@@ -20,6 +20,8 @@
 namespace mlo::apps {
 namespace {
 
+constexpr int kInterrupted = 4;  // exit code, see main.cpp
+
 struct Options {
   std::filesystem::path folder;
   OpenOptions open;
@@ -112,7 +114,7 @@ void run_command(Options options) {
   print_summary(summary, options.run.out);
   if (summary.interrupted) {
     spdlog::warn("stopped early: the results hold the scans up to then");
-    throw CLI::RuntimeError(1);
+    throw CLI::RuntimeError(kInterrupted);
   }
 }
 

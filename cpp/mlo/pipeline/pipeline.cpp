@@ -109,12 +109,12 @@ SweepTiming Pipeline::timing(const Scan& scan) const {
   SweepTiming timing{scan.motion_compensated, config_.motion.reference_fraction};
   if (state_.empty || scan.duration_s <= 0.0) return timing;
   const double sweeps = (scan.stamp_s - state_.stamp_s) / scan.duration_s;
-  if (sweeps >= kGapSweeps) timing.sweeps_since_previous = std::min(sweeps, kMaxPredictedSweeps);
+  if (sweeps >= kGapSweeps) timing.sweeps_since_previous = sweeps;
   return timing;
 }
 
 SE3 Pipeline::predict(const SweepTiming& timing) const {
-  return interpolate(state_.T_sweep, timing.sweeps_since_previous);
+  return interpolate(state_.T_sweep, std::min(timing.sweeps_since_previous, kMaxPredictedSweeps));
 }
 
 PredictedPoses Pipeline::predict_poses(double sweeps_ahead) const {
