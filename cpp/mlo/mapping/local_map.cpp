@@ -38,8 +38,8 @@ float axis_distance2(float fraction, int step) {
   return d * d;
 }
 
+// Sorts a point in that is among the k nearest so far.
 void keep_nearest(const Eigen::Vector3f& point, float d2, int k, NearestPoints& nearest) {
-  if (nearest.count == k && d2 >= nearest.squared_distances_m2[static_cast<std::size_t>(k - 1)]) return;
   int i = nearest.count < k ? nearest.count++ : k - 1;
   for (; i > 0 && nearest.squared_distances_m2[static_cast<std::size_t>(i - 1)] > d2; --i) {
     nearest.points[static_cast<std::size_t>(i)] = nearest.points[static_cast<std::size_t>(i - 1)];
@@ -63,13 +63,29 @@ void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
     if (is_new) entry.value() = take_voxel();
     Voxel& home = voxel(entry->second);
     if (home.count >= capacity) continue;
-    const auto end = home.points.begin() + home.count;
-    if (std::any_of(home.points.begin(), end,
-                    [&](const Eigen::Vector3f& q) { return (p - q).squaredNorm() < spacing2; })) {
-      continue;
-    }
-    home.points[home.count++] = p;
+    const auto distances2 = home.squared_distances_m2(p);
+    const auto end = distances2.begin() + home.count;
+    if (std::any_of(distances2.begin(), end, [&](float d2) { return d2 < spacing2; })) continue;
+    home.push_back(p);
   }
+}
+
+std::array<float, NearestPoints::kMax> LocalMap::Voxel::squared_distances_m2(const Eigen::Vector3f& p) const {
+  std::array<float, NearestPoints::kMax> distances2;
+  for (std::size_t i = 0; i < distances2.size(); ++i) {
+    const float dx = x[i] - p.x();
+    const float dy = y[i] - p.y();
+    const float dz = z[i] - p.z();
+    distances2[i] = dx * dx + dy * dy + dz * dz;
+  }
+  return distances2;
+}
+
+void LocalMap::Voxel::push_back(const Eigen::Vector3f& p) {
+  x[count] = p.x();
+  y[count] = p.y();
+  z[count] = p.z();
+  ++count;
 }
 
 std::uint32_t LocalMap::take_voxel() {
@@ -119,8 +135,12 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
     const auto found = index_.find({key.x + step.x, key.y + step.y, key.z + step.z});
     if (found == index_.end()) continue;
     const Voxel& near = voxel(found->second);
+    const auto distances2 = near.squared_distances_m2(query_map);
     for (std::uint32_t i = 0; i < near.count; ++i) {
-      keep_nearest(near.points[i], (near.points[i] - query_map).squaredNorm(), k, nearest);
+      if (nearest.count == k && distances2[i] >= nearest.squared_distances_m2[static_cast<std::size_t>(k - 1)]) {
+        continue;
+      }
+      keep_nearest(near.point(i), distances2[i], k, nearest);
     }
   }
   if (nearest.count > 0 && nearest.squared_distances_m2[0] > gate2) nearest.count = 0;

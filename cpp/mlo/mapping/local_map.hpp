@@ -43,9 +43,17 @@ class LocalMap {
   void clear();
 
  private:
+  // Coordinates apart, so that the distances to all points of a voxel are computed side by side.
   struct Voxel {
-    std::array<Eigen::Vector3f, NearestPoints::kMax> points;
+    std::array<float, NearestPoints::kMax> x{};
+    std::array<float, NearestPoints::kMax> y{};
+    std::array<float, NearestPoints::kMax> z{};
     std::uint32_t count = 0;
+
+    /// From a place to each point; what is beyond count means nothing.
+    std::array<float, NearestPoints::kMax> squared_distances_m2(const Eigen::Vector3f& p) const;
+    void push_back(const Eigen::Vector3f& p);
+    Eigen::Vector3f point(std::uint32_t i) const { return {x[i], y[i], z[i]}; }
   };
 
   // Voxels live in blocks, so that growing never moves them: no scan pays for copying the map.
