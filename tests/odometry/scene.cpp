@@ -7,8 +7,11 @@
 namespace mlo::test {
 namespace {
 
-constexpr double kMaxRange_m = 40.0;
-constexpr int kNumRows = 16;
+constexpr double kMaxRange_m = 35.0;
+constexpr int kNumGroundRows = 16;
+constexpr int kNumRows = 24;  // on walls and posts
+constexpr double kRowHeight_m = 0.15;
+constexpr double kColumnWidth_m = 0.3;
 
 // Puts world points into percepts as a moving, spinning lidar measures them.
 class Observer {
@@ -48,7 +51,7 @@ class Observer {
 };
 
 void add_ground(Observer& observer, const Eigen::Vector3d& center, FeatureSet& ground) {
-  for (int row = 0; row < kNumRows; ++row) {
+  for (int row = 0; row < kNumGroundRows; ++row) {
     const double radius = 4.0 + 1.2 * row;
     for (int column = 0; column < 200; ++column) {
       const double angle = 2.0 * std::numbers::pi * (column + observer.uniform(0.0, 1.0)) / 200.0;
@@ -61,9 +64,9 @@ void add_ground(Observer& observer, const Eigen::Vector3d& center, FeatureSet& g
 void add_wall(Observer& observer, const Wall& wall, FeatureSet& surface) {
   const double length = (wall.to - wall.from).norm();
   for (int row = 0; row < kNumRows; ++row) {
-    for (double along = observer.uniform(0.0, 0.5); along < length; along += 0.5) {
+    for (double along = observer.uniform(0.0, kColumnWidth_m); along < length; along += kColumnWidth_m) {
       const Eigen::Vector2d p = wall.from + along / length * (wall.to - wall.from);
-      observer.add(surface, {p.x(), p.y(), 0.3 + 0.3 * row + observer.uniform(-0.1, 0.1)}, row);
+      observer.add(surface, {p.x(), p.y(), 0.3 + kRowHeight_m * (row + observer.uniform(-0.3, 0.3))}, row);
     }
   }
 }
@@ -82,7 +85,8 @@ Percept observe(const Scene& scene, const View& view) {
   for (const Wall& wall : scene.walls) add_wall(observer, wall, percept.surface);
   for (const Eigen::Vector2d& post : scene.posts) {
     for (int row = 0; row < kNumRows; ++row) {
-      observer.add(percept.edge, {post.x(), post.y(), 0.3 + 0.3 * row + observer.uniform(-0.1, 0.1)}, row);
+      observer.add(percept.edge,
+                   {post.x(), post.y(), 0.3 + kRowHeight_m * (row + observer.uniform(-0.3, 0.3))}, row);
     }
   }
   percept.mean_ground_smoothness = 0.1;

@@ -35,7 +35,7 @@ struct View {
 /// The lidar 1.7 m above the ground, moved by a planar pose and a little tilt.
 SE3 pose_above_ground(double x, double y, double yaw_rad, double roll_rad = 0.0, double pitch_rad = 0.0);
 
-/// Features and candidates on everything within 40 m; a feature has smoothness 0.
+/// Features and candidates on everything within 35 m; a feature has smoothness 0.
 Percept observe(const Scene& scene, const View& view);
 
 /// A street with walls left and right that are not parallel throughout, a cross wall, and many posts.

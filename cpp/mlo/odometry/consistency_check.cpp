@@ -48,10 +48,9 @@ class Check {
 
   Matches match(const SE3& T_previous_current) const {
     const Placement placement(T_previous_current, timing_);
-    const double gate = config_.initial_gate_m;
-    return {match_lines(counted_.edge, placement, previous_.edge, gate, config_),
-            match_planes(counted_.ground, placement, previous_.ground, gate, config_),
-            match_planes(counted_.surface, placement, previous_.surface, gate, config_)};
+    return {match_lines(counted_.edge, placement, previous_.edge, config_),
+            match_planes(counted_.ground, placement, previous_.ground, config_),
+            match_planes(counted_.surface, placement, previous_.surface, config_)};
   }
 
   // The motion by which a random sample of matches fits: half of it ground, half edges (surfaces where there
@@ -59,10 +58,10 @@ class Check {
   SE3 sample_motion(const Matches& matches, const SE3& T_matched, std::mt19937_64& random) const {
     const Placement placement(T_matched, timing_);
     NormalEquations sums;
-    const std::size_t half = (static_cast<std::size_t>(config_.consistency.sample_size) + 1) / 2;
+    const auto size = static_cast<std::size_t>(config_.consistency.sample_size);
     const auto draw = [&](const auto& pool, const std::vector<FeaturePoint>& features,
                           const auto& residual_of) {
-      for (std::size_t i = 0; i < half && !pool.empty(); ++i) {
+      for (std::size_t i = 0; i < size && !pool.empty(); ++i) {
         const auto& match = pool[random() % pool.size()];
         const auto residual = residual_of(placement(features[match.feature]), match.shape);
         for (Eigen::Index row = 0; row < residual.value.size(); ++row)
@@ -70,7 +69,7 @@ class Check {
       }
     };
     draw(matches.ground, counted_.ground, point_to_plane);
-    if (matches.edge.size() >= half) {
+    if (matches.edge.size() >= size) {
       draw(matches.edge, counted_.edge, point_to_line);
     } else {
       draw(matches.surface, counted_.surface, point_to_plane);
@@ -151,10 +150,14 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
   ConsistencyResult result;
   SE3 T_best = T_previous_current_guess;
   std::size_t best_count = 0;
+  const std::size_t num_counted = check.counted().size();
+  const auto min_gain =
+      static_cast<std::size_t>(config.consistency.min_gain * static_cast<double>(num_counted));
   const auto try_motion = [&](const SE3& T_previous_current) {
     const Counts counts = check.count(T_previous_current);
     ++result.report.num_tried;
-    if (!check.passes(counts) || counts.all() <= best_count) return;
+    const bool better = !result.report.passed || counts.all() > best_count + min_gain;
+    if (!better || !check.passes(counts)) return;
     best_count = counts.all();
     T_best = T_previous_current;
     result.report.passed = true;
@@ -163,7 +166,8 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
   try_motion(T_best);
   Matches matches;
   SE3 T_matched;
-  for (int i = 0; i < config.consistency.iterations; ++i) {
+  // Nothing can gain enough once nearly all agree.
+  for (int i = 0; i < config.consistency.iterations && best_count + min_gain < num_counted; ++i) {
     if (i % config.consistency.match_interval == 0) {
       T_matched = T_best;
       matches = check.match(T_matched);
@@ -171,8 +175,9 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
     try_motion(check.sample_motion(matches, T_matched, random));
   }
   result.report.run = true;
-  result.report.share = share(best_count, check.counted().size());
+  result.report.share = share(best_count, num_counted);
   result.report.num_before = features.size();
+  result.T_previous_current = T_best;
   result.features = result.report.passed ? check.kept(T_best) : features;
   result.report.num_after = result.features.size();
   return result;

@@ -29,7 +29,8 @@ struct ConsistencyReport {
 };
 
 struct ConsistencyResult {
-  EgoFeatures features;  ///< with a tilde in the paper; all of them when the check did not pass
+  EgoFeatures features;    ///< with a tilde in the paper; all of them when the check did not pass
+  SE3 T_previous_current;  ///< the motion they agree with; the prediction when the check did not pass
   ConsistencyReport report;
 };
 

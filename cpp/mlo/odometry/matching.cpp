@@ -64,9 +64,9 @@ std::vector<Match<Shape>> match_all(const std::vector<FeaturePoint>& features, c
 
 }  // namespace
 
-std::optional<Line> find_line(const Eigen::Vector3d& p, const CandidateSet& candidates, double gate_m,
+std::optional<Line> find_line(const Eigen::Vector3d& p, const CandidateSet& candidates,
                               const OdometryConfig& config) {
-  const std::optional<std::size_t> nearest = candidates.nearest(p, gate_m);
+  const std::optional<std::size_t> nearest = candidates.nearest(p, config.gate_m);
   if (!nearest) return std::nullopt;
   const Eigen::Vector3d m = candidates.point(*nearest);
   if (candidates.ring(*nearest) == Point::kNoRing) {
@@ -85,9 +85,9 @@ std::optional<Line> find_line(const Eigen::Vector3d& p, const CandidateSet& cand
   return line_through(m, candidates.point(*other), 0.0);
 }
 
-std::optional<Plane> find_plane(const Eigen::Vector3d& p, const CandidateSet& candidates, double gate_m,
+std::optional<Plane> find_plane(const Eigen::Vector3d& p, const CandidateSet& candidates,
                                 const OdometryConfig& config) {
-  const std::optional<std::size_t> nearest = candidates.nearest(p, gate_m);
+  const std::optional<std::size_t> nearest = candidates.nearest(p, config.gate_m);
   if (!nearest) return std::nullopt;
   const Eigen::Vector3d m = candidates.point(*nearest);
   const std::size_t ring = candidates.ring(*nearest);
@@ -109,18 +109,15 @@ std::optional<Plane> find_plane(const Eigen::Vector3d& p, const CandidateSet& ca
 }
 
 std::vector<LineMatch> match_lines(const std::vector<FeaturePoint>& features, const Placement& placement,
-                                   const CandidateSet& candidates, double gate_m,
-                                   const OdometryConfig& config) {
+                                   const CandidateSet& candidates, const OdometryConfig& config) {
   return match_all<Line>(features, placement,
-                         [&](const Eigen::Vector3d& p) { return find_line(p, candidates, gate_m, config); });
+                         [&](const Eigen::Vector3d& p) { return find_line(p, candidates, config); });
 }
 
 std::vector<PlaneMatch> match_planes(const std::vector<FeaturePoint>& features, const Placement& placement,
-                                     const CandidateSet& candidates, double gate_m,
-                                     const OdometryConfig& config) {
-  return match_all<Plane>(features, placement, [&](const Eigen::Vector3d& p) {
-    return find_plane(p, candidates, gate_m, config);
-  });
+                                     const CandidateSet& candidates, const OdometryConfig& config) {
+  return match_all<Plane>(features, placement,
+                          [&](const Eigen::Vector3d& p) { return find_plane(p, candidates, config); });
 }
 
 }  // namespace mlo

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <iterator>
 
 #include <Eigen/Eigenvalues>
 
-#include "mlo/core/parallel.hpp"
-#include "mlo/odometry/matching.hpp"
+#include "mlo/odometry/alignment.hpp"
 #include "mlo/odometry/start_search.hpp"
 #include "mlo/odometry/thinning.hpp"
 
@@ -16,123 +15,14 @@ namespace {
 
 using Active = Eigen::Matrix<bool, 6, 1>;
 
-// Parameters are [t_x t_y t_z roll pitch yaw].
-const Active kAll = Active::Constant(true);
-const Active kGroundPart = (Active() << false, false, true, true, true, false).finished();
-const Active kBackgroundPart = (Active() << true, true, false, false, false, true).finished();
-
-struct Kinds {
-  bool ground;
-  bool background;
-};
-
-struct Matches {
-  std::vector<PlaneMatch> ground;
-  std::vector<LineMatch> edge;
-  std::vector<PlaneMatch> surface;
-
-  std::size_t size() const { return ground.size() + edge.size() + surface.size(); }
-};
-
-// Everything an estimate of some of the parameters leaves behind.
-struct PartialEstimate {
-  SE3 T_previous_current;
-  Matches matches;
-  NormalEquations sums;
-  int degenerate_directions = 0;
-  int iterations = 0;
-  bool converged = false;
-  bool enough_matches = false;
-};
-
-class Estimator {
- public:
-  Estimator(const EgoFeatures& features, const ReferenceScan& previous, const SweepTiming& timing,
-            const OdometryConfig& config)
-      : features_(features), previous_(previous), timing_(timing), config_(config) {}
-
-  // Alternates matching, with a gate that narrows, and Gauss-Newton steps, until the pose stays.
-  PartialEstimate estimate(const SE3& T_start, Kinds kinds, const Active& active) const {
-    PartialEstimate result;
-    result.T_previous_current = T_start;
-    double gate_m = config_.initial_gate_m;
-    for (int i = 0; i < config_.max_matchings; ++i) {
-      const SE3 T_matched = result.T_previous_current;
-      result.matches = match(T_matched, kinds, gate_m);
-      result.enough_matches = result.matches.size() >= static_cast<std::size_t>(config_.min_matches);
-      if (!result.enough_matches) return result;
-      optimise(active, result);
-      if (!result.T_previous_current.is_finite()) {
-        result.enough_matches = false;
-        return result;
-      }
-      const bool final_gate = gate_m <= config_.final_gate_m;
-      result.converged = final_gate && is_small(T_matched.inverse() * result.T_previous_current, 1.0);
-      if (result.converged) return result;
-      gate_m = std::max(config_.final_gate_m, gate_m * config_.gate_shrink);
-    }
-    return result;
-  }
-
- private:
-  Matches match(const SE3& T_previous_current, Kinds kinds, double gate_m) const {
-    const Placement placement(T_previous_current, timing_);
-    Matches matches;
-    if (kinds.ground) {
-      matches.ground = match_planes(features_.ground, placement, previous_.ground, gate_m, config_);
-    }
-    if (kinds.background) {
-      matches.edge = match_lines(features_.edge, placement, previous_.edge, gate_m, config_);
-      matches.surface = match_planes(features_.surface, placement, previous_.surface, gate_m, config_);
-    }
-    return matches;
-  }
-
-  void optimise(const Active& active, PartialEstimate& result) const {
-    // A tenth of the motion that asks for new matches: steps below it cannot change the outcome.
-    constexpr double kStepShare = 0.1;
-    for (int i = 0; i < config_.steps_per_matching; ++i) {
-      result.sums = linearize(result.matches, result.T_previous_current);
-      const GaussNewtonStep step = solve(result.sums, config_.min_curvature, config_.lever_arm_m, active);
-      const SE3 change = SE3::exp(step.xi);
-      result.T_previous_current = change * result.T_previous_current;
-      result.degenerate_directions = step.degenerate_directions;
-      ++result.iterations;
-      if (is_small(change, kStepShare)) return;
-    }
-  }
-
-  NormalEquations linearize(const Matches& matches, const SE3& T_previous_current) const {
-    const Placement placement(T_previous_current, timing_);
-    const double kernel_squared = config_.kernel_m * config_.kernel_m;
-    const auto sum = [&](const auto& kind, const std::vector<FeaturePoint>& features,
-                         const auto& residual_of) {
-      return parallel_sum<NormalEquations>(kind.size(), [&](NormalEquations& sums, std::size_t i) {
-        const FeaturePoint& feature = features[kind[i].feature];
-        const auto residual = residual_of(placement(feature), kind[i].shape);
-        const double root = kernel_squared / (kernel_squared + residual.value.squaredNorm());
-        const double gain = placement.gain(feature);
-        for (Eigen::Index row = 0; row < residual.value.size(); ++row)
-          sums.add(residual.value(row), gain * residual.jacobian.row(row).transpose(), root * root);
-      });
-    };
-    NormalEquations sums = sum(matches.ground, features_.ground, point_to_plane);
-    sums += sum(matches.edge, features_.edge, point_to_line);
-    sums += sum(matches.surface, features_.surface, point_to_plane);
-    return sums;
-  }
-
-  bool is_small(const SE3& motion, double share) const {
-    const double max_angle_rad = config_.rematch_angle_deg * std::numbers::pi / 180.0;
-    return motion.translation().norm() <= share * config_.rematch_distance_m &&
-           motion.rotation_angle_rad() <= share * max_angle_rad;
-  }
-
-  const EgoFeatures& features_;
-  const ReferenceScan& previous_;
-  const SweepTiming timing_;
-  const OdometryConfig& config_;
-};
+// The two steps of the paper; parameters are [t_x t_y t_z roll pitch yaw].
+const AlignmentTask kGroundStep = {.ground = true,
+                                   .background = false,
+                                   .active = (Active() << false, false, true, true, true, false).finished()};
+const AlignmentTask kBackgroundStep = {
+    .ground = false,
+    .background = true,
+    .active = (Active() << true, true, false, false, false, true).finished()};
 
 // Curvature in the estimated parameters only; the rest is zero.
 NormalEquations::Matrix6d block(const NormalEquations::Matrix6d& H, const Active& active) {
@@ -153,27 +43,28 @@ NormalEquations::Matrix6d covariance(const NormalEquations& sums, const Odometry
          eigen.eigenvectors().transpose() * scale.asDiagonal();
 }
 
-PoseEstimate to_pose_estimate(const PartialEstimate& estimate, const OdometryConfig& config) {
+PoseEstimate to_pose_estimate(const Alignment& alignment, const OdometryConfig& config) {
   PoseEstimate pose;
-  pose.T_target_source = estimate.T_previous_current;
-  pose.degenerate_directions = estimate.degenerate_directions;
-  pose.num_matches = estimate.matches.size();
-  pose.iterations = estimate.iterations;
-  pose.covariance = covariance(estimate.sums, config);
-  pose.rms_residual_m = std::sqrt(estimate.sums.cost / std::max(estimate.sums.weight, 1e-12));
+  pose.T_target_source = alignment.T_previous_current;
+  pose.degenerate_directions = alignment.degenerate_directions;
+  pose.num_matches = alignment.num_matches();
+  pose.iterations = alignment.iterations;
+  pose.covariance = covariance(alignment.sums, config);
+  pose.rms_residual_m = std::sqrt(alignment.sums.cost / std::max(alignment.sums.weight, 1e-12));
   pose.status = EstimateStatus::max_iterations;
-  if (estimate.converged) pose.status = EstimateStatus::converged;
-  if (estimate.degenerate_directions > 0) pose.status = EstimateStatus::degenerate;
+  if (alignment.converged) pose.status = EstimateStatus::converged;
+  if (alignment.degenerate_directions > 0) pose.status = EstimateStatus::degenerate;
   return pose;
 }
 
-// The two steps' sums and counts as if they had been one estimate.
-PartialEstimate joined(const PartialEstimate& ground, PartialEstimate background) {
-  background.sums.H = block(ground.sums.H, kGroundPart) + block(background.sums.H, kBackgroundPart);
+// The two steps as if they had been one alignment.
+Alignment joined(const Alignment& ground, Alignment background) {
+  background.sums.H =
+      block(ground.sums.H, kGroundStep.active) + block(background.sums.H, kBackgroundStep.active);
   background.sums.cost += ground.sums.cost;
   background.sums.weight += ground.sums.weight;
   background.sums.count += ground.sums.count;
-  background.matches.ground = ground.matches.ground;
+  background.num_ground = ground.num_ground;
   background.degenerate_directions += ground.degenerate_directions;
   background.iterations += ground.iterations;
   background.converged = background.converged && ground.converged;
@@ -195,21 +86,26 @@ EgoFeatures select_features(const Percept& current, const OdometryConfig& config
           thinned(surface, limit)};
 }
 
-PartialEstimate estimate_increment(const EgoFeatures& features, const ReferenceScan& previous,
-                                   const SE3& T_start, const SweepTiming& timing,
-                                   const OdometryConfig& config, bool& ground_scarce) {
-  const Estimator estimator(features, previous, timing, config);
+Alignment estimate_increment(const EgoFeatures& features, const ReferenceScan& previous, const SE3& T_start,
+                             const SweepTiming& timing, const OdometryConfig& config) {
   if (config.estimator == OdometryConfig::Estimator::two_step) {
-    const PartialEstimate ground =
-        estimator.estimate(T_start, {.ground = true, .background = false}, kGroundPart);
-    ground_scarce = !ground.enough_matches;
-    if (!ground_scarce) {
-      const PartialEstimate background = estimator.estimate(
-          ground.T_previous_current, {.ground = false, .background = true}, kBackgroundPart);
-      return joined(ground, background);
-    }
+    const Alignment ground = align(features, previous, T_start, timing, kGroundStep, config);
+    if (ground.enough_matches)
+      return joined(ground,
+                    align(features, previous, ground.T_previous_current, timing, kBackgroundStep, config));
   }
-  return estimator.estimate(T_start, {.ground = true, .background = true}, kAll);
+  return align(features, previous, T_start, timing, {}, config);
+}
+
+// Where nothing predicts the motion: a search, then an estimate with a kernel as wide as the step of the
+// search. The usual kernel would hold on to the start, or to traffic that moves along.
+SE3 find_start(const EgoFeatures& features, const ReferenceScan& previous, const SweepTiming& timing,
+               const OdometryConfig& config) {
+  OdometryConfig coarse = config;
+  coarse.kernel_m = std::max(config.kernel_m, config.start_step_m);
+  const SE3 T_start = search_start(features, previous, timing, config);
+  const Alignment alignment = estimate_increment(features, previous, T_start, timing, coarse);
+  return alignment.enough_matches ? alignment.T_previous_current : T_start;
 }
 
 }  // namespace
@@ -218,25 +114,24 @@ EgoOdometryResult estimate_ego(const Percept& current, const ReferenceScan& prev
                                const std::optional<SE3>& guess, const SweepTiming& timing,
                                const OdometryConfig& config, std::size_t frame) {
   EgoOdometryResult result;
-  const SE3 T_guess = guess.value_or(SE3());
   EgoFeatures features = select_features(current, config, result);
-  const SE3 T_start = guess ? T_guess : search_start(features, previous, timing, config);
+  SE3 T_start = guess ? *guess : find_start(features, previous, timing, config);
   if (config.consistency_check && features.size() > 0) {
     ConsistencyResult checked = check_consistency(features, previous, T_start, timing, config, frame);
     features = std::move(checked.features);
+    T_start = checked.T_previous_current;
     result.consistency = checked.report;
   }
-  const PartialEstimate estimate =
-      estimate_increment(features, previous, T_start, timing, config, result.ground_scarce);
-  result.num_ground_matches = estimate.matches.ground.size();
-  result.num_edge_matches = estimate.matches.edge.size();
-  result.num_surface_matches = estimate.matches.surface.size();
-  if (estimate.enough_matches) {
-    result.increment = to_pose_estimate(estimate, config);
+  const Alignment alignment = estimate_increment(features, previous, T_start, timing, config);
+  result.num_ground_matches = alignment.num_ground;
+  result.num_edge_matches = alignment.num_edge;
+  result.num_surface_matches = alignment.num_surface;
+  if (alignment.enough_matches) {
+    result.increment = to_pose_estimate(alignment, config);
   } else {
-    result.increment.T_target_source = T_guess;
+    result.increment.T_target_source = guess.value_or(SE3());
     result.increment.status = EstimateStatus::too_few_matches;
-    result.increment.num_matches = estimate.matches.size();
+    result.increment.num_matches = alignment.num_matches();
   }
   return result;
 }

@@ -23,8 +23,6 @@ struct EgoOdometryResult {
   std::size_t num_surface_matches = 0;
   /// Too few surface features are flatter than S_a, so that all of them took part.
   bool flat_surfaces_scarce = false;
-  /// The two steps were not possible for want of ground, so that all six parameters were estimated at once.
-  bool ground_scarce = false;
 };
 
 /// Scan-to-scan odometry (paper, section III-C-1): consistency check, then [t_z, roll, pitch] from the ground
