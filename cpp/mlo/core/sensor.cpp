@@ -12,4 +12,20 @@ std::vector<double> SensorConfig::elevations_deg() const {
   return elevations;
 }
 
+SensorConfig hdl64e() {
+  SensorConfig sensor;
+  sensor.name = "hdl64e";
+  sensor.rings = 64;
+  for (int ring = 0; ring < 32; ++ring) sensor.beam_elevations_deg.push_back(2.0 - ring / 3.0);
+  for (int ring = 0; ring < 32; ++ring) sensor.beam_elevations_deg.push_back(-8.83 - 0.5 * ring);
+  sensor.max_elevation_deg = sensor.beam_elevations_deg.front();
+  sensor.min_elevation_deg = sensor.beam_elevations_deg.back();
+  sensor.rate_hz = 10.0;
+  sensor.clockwise = true;
+  sensor.start_azimuth_deg = 180.0;
+  sensor.min_range_m = 2.7;
+  sensor.max_range_m = 120.0;
+  return sensor;
+}
+
 }  // namespace mlo

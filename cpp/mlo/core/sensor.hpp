@@ -21,7 +21,8 @@ struct SensorConfig {
   int columns = 2048;                ///< firings per revolution (simulation only)
   double min_range_m = 1.0;
   double max_range_m = 120.0;
-  double vertical_correction_deg = 0.0;  ///< rotation of every point about z x p that undoes an elevation bias
+  double vertical_correction_deg =
+      0.0;  ///< raises every point by this angle, against a bias of the elevations
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -41,11 +42,15 @@ struct SensorConfig {
     visit("max_range_m", max_range_m, between(1.0, 10000.0),
           "farther points are dropped: sparse and noisy [m]");
     visit("vertical_correction_deg", vertical_correction_deg, between(-5.0, 5.0),
-          "rotates every point about z x p by this much, against a known bias of the elevation [deg]");
+          "raises every point by this angle, against a known bias of the elevations [deg]");
   }
 
   /// One elevation per ring [deg], highest first: the table, or evenly spaced; empty when rings is 0.
   std::vector<double> elevations_deg() const;
 };
+
+/// Velodyne HDL-64E as KITTI mounts and runs it: nominal elevations (upper 32 beams 1/3 degree apart, lower
+/// 32 half a degree), 10 Hz, clockwise from behind.
+SensorConfig hdl64e();
 
 }  // namespace mlo

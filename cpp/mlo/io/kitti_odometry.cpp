@@ -1,0 +1,58 @@
+#include "mlo/io/kitti_odometry.hpp"
+
+#include <utility>
+
+#include "mlo/io/text_records.hpp"
+
+namespace mlo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bias of the vertical angles of the benchmark's scans (Deschaud, IMLS-SLAM, ICRA 2018).
+constexpr double kVerticalCorrectionDeg = 0.205;
+
+// The object benchmark also has velodyne/NNNNNN.bin, but neither of the two files nor a number for a name.
+bool is_sequence(const fs::path& folder) {
+  return holds_files(folder / "velodyne", ".bin") &&
+         (fs::exists(folder / "times.txt") || fs::exists(folder / "calib.txt") ||
+          parse_index(folder.filename().string()));
+}
+
+}  // namespace
+
+std::vector<SequenceFolder> find_kitti_odometry(const fs::path& folder) {
+  std::vector<fs::path> candidates{folder};
+  for (const fs::path& parent : {folder, folder / "sequences", folder / "dataset" / "sequences"}) {
+    for (const fs::path& child : subfolders(parent)) candidates.push_back(child);
+  }
+  std::vector<SequenceFolder> sequences;
+  for (const fs::path& candidate : candidates) {
+    const std::string name = candidate.filename().string();
+    if (is_sequence(candidate)) sequences.push_back({name, parse_index(name), candidate});
+  }
+  return sequences;
+}
+
+Dataset open_kitti_odometry(const SequenceFolder& sequence) {
+  Dataset dataset;
+  dataset.format = "kitti_odometry";
+  dataset.sequence = sequence.name;
+  dataset.root = sequence.path;
+  dataset.sensor = hdl64e();
+  dataset.sensor.vertical_correction_deg = kVerticalCorrectionDeg;
+
+  const fs::path times = sequence.path / "times.txt";
+  std::vector<double> stamps_s;
+  if (fs::exists(times)) stamps_s = read_stamps_s(times);
+  const double period_s = median_period_s(stamps_s, 1.0 / dataset.sensor.rate_hz);
+  std::vector<ScanFile> scans = list_numbered_scans(sequence.path / "velodyne", ".bin");
+  for (ScanFile& scan : scans) scan.duration_s = period_s;
+  dataset.warnings = set_stamps(scans, stamps_s, period_s, times.string());
+  dataset.scans = std::make_unique<ScanFiles>(
+      std::move(scans),
+      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = true});
+  return dataset;
+}
+
+}  // namespace mlo

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mlo/core/sensor.hpp"
+#include "mlo/core/types.hpp"
+
+namespace mlo {
+
+/// What was found out about the scan lines of a point list.
+struct RingRecovery {
+  bool recovered = false;            ///< false: every ring was left at Point::kNoRing
+  std::string problem;               ///< why not; empty when recovered
+  std::size_t rings = 0;             ///< scan lines found
+  bool monotone_elevations = false;  ///< mean elevation falls from each ring to the next
+  double corrected_share = 0.0;  ///< share of points whose ring, by azimuth alone, the elevation corrected
+  std::vector<double> elevation_deg;  ///< mean elevation of each ring found, highest first
+};
+
+/// Counter-clockwise azimuth of (x, y) in turns, in [0, 1); 0 is along x. Accurate to 1e-7 turns; 0 at the
+/// origin.
+float azimuth_turns(float x, float y);
+
+/// Sets the ring of each point of a file that lists its scan lines one after the other: lines end where the
+/// azimuth comes round to where the first one began (any cut, both directions, highest or lowest line first),
+/// and the vertical angle must agree: it moves a line's end that the azimuth misplaces, joins lines split by
+/// mistake, and tells which lines are absent. Neither is trusted alone; where they disagree nothing is
+/// recovered. Coordinates must be finite.
+/// @param sensor  its number of rings and their elevations; with rings = 0 lines are numbered as found
+RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor);
+
+/// Sets the sweep fraction of each point from its azimuth, by where the sweep begins and which way it turns.
+void recover_sweep_fractions(std::span<Point> points, const SensorConfig& sensor);
+
+/// Turns each point upwards in its vertical plane (about p x z) by the angle, keeping its range: undoes a
+/// constant bias of the elevations (0.205 degrees for KITTI; Deschaud, IMLS-SLAM, ICRA 2018). Points on the z
+/// axis stay.
+void correct_vertical_angle(std::span<Point> points, double degrees);
+
+}  // namespace mlo
