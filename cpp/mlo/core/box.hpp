@@ -27,6 +27,14 @@ struct Box3d {
   bool contains(const Eigen::Vector3d& p_lidar, double margin_m = 0.0) const;
 };
 
+/// Upright rectangle in an image; x to the right, y down.
+struct Box2d {
+  double left_px = 0.0;
+  double top_px = 0.0;
+  double right_px = 0.0;
+  double bottom_px = 0.0;
+};
+
 /// A detector's output: tau and mu of the paper (section III-B-2).
 struct Detection {
   ObjectClass object_class = ObjectClass::car;

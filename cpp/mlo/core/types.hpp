@@ -29,4 +29,14 @@ struct Scan {
   bool motion_compensated = false;
 };
 
+/// What a point of the static map was taken for. The numbers are those in map files.
+enum class MapLabel : std::uint8_t { unknown = 0, ground = 1, edge = 2, surface = 3, object = 4 };
+
+/// One point of the static map.
+struct MapPoint {
+  Eigen::Vector3f p_map = Eigen::Vector3f::Zero();  ///< map frame [m]
+  float intensity = 0.0F;                           ///< as in Point
+  MapLabel label = MapLabel::unknown;
+};
+
 }  // namespace mlo
