@@ -115,16 +115,6 @@ std::vector<int> columns_from_ahead(const SensorConfig& sensor) {
 
 }  // namespace
 
-SensorConfig hdl64e() {
-  SensorConfig sensor;
-  sensor.name = "hdl64e";
-  sensor.rings = 64;
-  for (int i = 0; i < 32; ++i) sensor.beam_elevations_deg.push_back(2.0 - i / 3.0);
-  for (int i = 0; i < 32; ++i) sensor.beam_elevations_deg.push_back(-8.83 - i / 2.0);
-  sensor.columns = 2160;
-  return sensor;
-}
-
 double stamp_fraction(const SensorConfig& sensor) {
   const double turn = (sensor.clockwise ? 1.0 : -1.0) * sensor.start_azimuth_deg / 360.0;
   return turn - std::floor(turn);

@@ -12,9 +12,6 @@
 
 namespace mlo::simulator {
 
-/// The HDL-64E as its data sheet has it: 32 beams from +2 to -8.33 degrees, 32 from -8.83 to -24.33; 10 Hz.
-SensorConfig hdl64e();
-
 /// How far the simulated lidar is from a perfect one.
 struct LidarErrors {
   double range_noise_m = 0.015;  ///< standard deviation
