@@ -5,13 +5,17 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "io/scratch_folder.hpp"
+#include "io/file_bytes.hpp"
 #include "mlo/core/error.hpp"
 #include "mlo/io/atomic_file.hpp"
+#include "temp_folder.hpp"
 
 namespace mlo {
 namespace {
 
+using test::count_files;
+using test::read_bytes;
+using test::TempFolder;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -36,58 +40,58 @@ class FileSizeLimit {
 };
 
 TEST(AtomicFile, WritesAllBytesAndLeavesNothingBeside) {
-  const ScratchFolder folder;
+  const TempFolder folder;
   std::string content;
   for (int i = 0; i < 3'000'000; ++i) content += static_cast<char>(i * 7);
-  write_file_atomically(folder / "a.bin", content);
-  EXPECT_EQ(read_bytes(folder / "a.bin"), content);
-  write_file_atomically(folder / "a.bin", "");
-  EXPECT_EQ(read_bytes(folder / "a.bin"), "");
-  EXPECT_EQ(folder.count_files(), 1U);
+  write_file_atomically(folder.path() / "a.bin", content);
+  EXPECT_EQ(read_bytes(folder.path() / "a.bin"), content);
+  write_file_atomically(folder.path() / "a.bin", "");
+  EXPECT_EQ(read_bytes(folder.path() / "a.bin"), "");
+  EXPECT_EQ(count_files(folder.path()), 1U);
 }
 
 TEST(AtomicFile, KeepsTheOldFileUntilCommit) {
-  const ScratchFolder folder;
-  write_file_atomically(folder / "a.txt", "old");
+  const TempFolder folder;
+  write_file_atomically(folder.path() / "a.txt", "old");
   {
-    AtomicFile file(folder / "a.txt");
+    AtomicFile file(folder.path() / "a.txt");
     file.write("new");
-    EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
+    EXPECT_EQ(read_bytes(folder.path() / "a.txt"), "old");
   }
-  EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
-  EXPECT_EQ(folder.count_files(), 1U);
+  EXPECT_EQ(read_bytes(folder.path() / "a.txt"), "old");
+  EXPECT_EQ(count_files(folder.path()), 1U);
 }
 
 TEST(AtomicFile, IsNotDisturbedByWhatACrashLeftBehind) {
-  const ScratchFolder folder;
-  AtomicFile left_open(folder / "a.txt");
+  const TempFolder folder;
+  AtomicFile left_open(folder.path() / "a.txt");
   left_open.write("never committed");
-  write_file_atomically(folder / "a.txt", "new");
-  EXPECT_EQ(read_bytes(folder / "a.txt"), "new");
+  write_file_atomically(folder.path() / "a.txt", "new");
+  EXPECT_EQ(read_bytes(folder.path() / "a.txt"), "new");
 }
 
 TEST(AtomicFile, SaysWhyItCannotBeWritten) {
-  const ScratchFolder folder;
-  EXPECT_THAT([&] { write_file_atomically(folder / "missing" / "a.txt", "x"); },
+  const TempFolder folder;
+  EXPECT_THAT([&] { write_file_atomically(folder.path() / "missing" / "a.txt", "x"); },
               ThrowsMessage<InputError>(HasSubstr("create the folder")));
-  write_file_atomically(folder / "file", "x");
-  EXPECT_THAT([&] { write_file_atomically(folder / "file" / "a.txt", "x"); },
+  write_file_atomically(folder.path() / "file", "x");
+  EXPECT_THAT([&] { write_file_atomically(folder.path() / "file" / "a.txt", "x"); },
               ThrowsMessage<InputError>(HasSubstr("create the folder")));
-  std::filesystem::create_directory(folder / "sub");
-  EXPECT_THAT([&] { write_file_atomically(folder / "sub", "x"); },
+  std::filesystem::create_directory(folder.path() / "sub");
+  EXPECT_THAT([&] { write_file_atomically(folder.path() / "sub", "x"); },
               ThrowsMessage<InputError>(HasSubstr("a folder has this name")));
 }
 
 TEST(AtomicFile, SurvivesAFullDisk) {
-  const ScratchFolder folder;
-  write_file_atomically(folder / "a.txt", "old");
+  const TempFolder folder;
+  write_file_atomically(folder.path() / "a.txt", "old");
   {
     const FileSizeLimit limit(10'000);
-    EXPECT_THAT([&] { write_file_atomically(folder / "a.txt", std::string(20'000, 'x')); },
+    EXPECT_THAT([&] { write_file_atomically(folder.path() / "a.txt", std::string(20'000, 'x')); },
                 ThrowsMessage<InputError>(HasSubstr("free some space")));
   }
-  EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
-  EXPECT_EQ(folder.count_files(), 1U);
+  EXPECT_EQ(read_bytes(folder.path() / "a.txt"), "old");
+  EXPECT_EQ(count_files(folder.path()), 1U);
 }
 
 }  // namespace
