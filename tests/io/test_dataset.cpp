@@ -77,13 +77,39 @@ TEST(OpenDataset, KittiRawFromEveryLevel) {
   }
 }
 
+TEST(OpenDataset, KittiTrackingFromEveryLevel) {
+  const test::TempFolder folder;
+  folder.write("t/training/velodyne/0001/000176.bin", small_scan());
+  folder.write("t/training/velodyne/0001/000181.bin", small_scan());
+  folder.write("t/training/calib/0001.txt", "Tr_imu_velo 1 0 0 -0.8 0 1 0 0.3 0 0 1 -0.8\n");
+  std::string rows;
+  for (int frame = 0; frame < 200; ++frame) rows += "1 0 0 " + std::to_string(frame) + " 0 1 0 0 0 0 1 0\n";
+  folder.write("t/training/poses_imu/0001.txt", rows);
+  folder.write("t/training/label_02/0001.txt", "");
+  for (const char* level : {"t", "t/training", "t/training/velodyne", "t/training/velodyne/0001"}) {
+    const Dataset dataset = open_dataset(folder.path() / level, {});
+    EXPECT_EQ(dataset.format, "kitti_tracking") << level;
+    EXPECT_EQ(dataset.sequence, "0001");
+    EXPECT_THAT(frames(*dataset.scans), ElementsAre(176U, 177U, 178U, 179U, 180U, 181U));
+    EXPECT_THAT(dataset.scans->read(1).problem, HasSubstr("000177.bin: the scan is missing"));
+    EXPECT_EQ(dataset.labels, folder.path() / "t/training/label_02/0001.txt");
+    ASSERT_TRUE(dataset.truth.has_value());
+    EXPECT_EQ(dataset.truth->frames.front(), 176U);
+    EXPECT_NEAR(dataset.truth->T_world_body.back().translation().x(), 5.0, 1e-9);
+    const ScanReading reading = dataset.scans->read(5);
+    ASSERT_TRUE(reading.scan.has_value()) << reading.problem;
+    EXPECT_FALSE(reading.scan->motion_compensated);
+    EXPECT_NEAR(reading.scan->stamp_s, 18.1, 1e-9);
+  }
+}
+
 TEST(OpenDataset, AsksWhichOfSeveralSequences) {
   const test::TempFolder folder;
   for (const char* drive : {"2011_09_26_drive_0005_sync", "2011_09_26_drive_0009_sync"}) {
     folder.write(std::string("2011_09_26/") + drive + "/velodyne_points/data/0000000000.bin", small_scan());
   }
   const auto open = [&](const std::string& sequence) {
-    return open_dataset(folder.path(), {.sequence = sequence}).sequence;
+    return open_dataset(folder.path(), {.format = "auto", .sequence = sequence}).sequence;
   };
   EXPECT_EQ(open("0009"), "2011_09_26_drive_0009_sync");
   EXPECT_EQ(open("5"), "2011_09_26_drive_0005_sync");
@@ -144,14 +170,19 @@ TEST(OpenDataset, StampsThatAreMissingOrUnsorted) {
 TEST(RealDatasets, OpenWithTheirStampsAndGaps) {
   const auto data = test::real_data();
   if (!data) GTEST_SKIP() << test::kNoRealData;
-  const Dataset odometry = open_dataset(*data / "kitti_odometry", {.sequence = "01"});
+  const Dataset odometry = open_dataset(*data / "kitti_odometry", {.format = "auto", .sequence = "01"});
   EXPECT_EQ(odometry.scans->size(), 77U);
   EXPECT_THAT(odometry.warnings, IsEmpty());
   EXPECT_NEAR(odometry.scans->read(1).scan->stamp_s, 0.1037595, 1e-6);
-  const Dataset raw = open_dataset(*data / "kitti_raw", {.sequence = "9"});
+  const Dataset raw = open_dataset(*data / "kitti_raw", {.format = "auto", .sequence = "9"});
   EXPECT_EQ(raw.scans->size(), 51U);
   EXPECT_THAT(raw.warnings, IsEmpty());
   EXPECT_NEAR(raw.scans->read(50).scan->duration_s, 0.1033, 0.001);
+  const Dataset tracking = open_dataset(*data / "kitti_tracking", {.format = "auto", .sequence = "0000"});
+  EXPECT_EQ(tracking.scans->size(), 154U);
+  EXPECT_THAT(tracking.warnings, IsEmpty());
+  ASSERT_TRUE(tracking.truth.has_value());
+  EXPECT_EQ(tracking.truth->frames.size(), 154U);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "mlo/core/error.hpp"
 #include "mlo/io/kitti_odometry.hpp"
 #include "mlo/io/kitti_raw.hpp"
+#include "mlo/io/kitti_tracking.hpp"
 #include "mlo/io/sequence_files.hpp"
 
 namespace mlo {
@@ -29,6 +30,7 @@ constexpr std::array kLayouts{
     Layout{"kitti_odometry", "sequences/NN/velodyne/*.bin", find_kitti_odometry, open_kitti_odometry},
     Layout{"kitti_raw", "DATE/DATE_drive_NNNN_sync/velodyne_points/data/*.bin", find_kitti_raw,
            open_kitti_raw},
+    Layout{"kitti_tracking", "training/velodyne/NNNN/*.bin", find_kitti_tracking, open_kitti_tracking},
 };
 
 // Absolute, and without a slash at the end, so that it has a name.

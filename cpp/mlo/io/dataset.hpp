@@ -52,8 +52,10 @@ struct Dataset {
   std::filesystem::path root;
   std::unique_ptr<ScanSource> scans;
   Calibration calibration;
-  std::optional<PoseList> truth;      ///< lidar poses at the scans' stamps, where the data has them
-  SensorConfig sensor;                ///< what this kind of data is known to come from
+  /// Lidar poses at the scans' stamps in the lidar frame at the first of them, where the data has them.
+  std::optional<PoseList> truth;
+  std::filesystem::path labels;  ///< annotated objects that come along (KITTI tracking labels); empty: none
+  SensorConfig sensor;           ///< what this kind of data is known to come from
   std::vector<std::string> warnings;  ///< what looks wrong, one sentence each
 };
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mlo/io/calibration.hpp"
+#include "mlo/io/pose_files.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -17,6 +19,13 @@ bool is_sequence(const fs::path& folder) {
   return holds_files(folder / "velodyne", ".bin") &&
          (fs::exists(folder / "times.txt") || fs::exists(folder / "calib.txt") ||
           parse_index(folder.filename().string()));
+}
+
+// Camera poses: dataset/poses/NN.txt beside dataset/sequences, or in the sequence's own folder.
+fs::path poses_file(const SequenceFolder& sequence) {
+  const fs::path own = sequence.path / "poses.txt";
+  return fs::exists(own) ? own
+                         : sequence.path.parent_path().parent_path() / "poses" / (sequence.name + ".txt");
 }
 
 }  // namespace
@@ -49,6 +58,13 @@ Dataset open_kitti_odometry(const SequenceFolder& sequence) {
   std::vector<ScanFile> scans = list_numbered_scans(sequence.path / "velodyne", ".bin");
   for (ScanFile& scan : scans) scan.duration_s = period_s;
   dataset.warnings = set_stamps(scans, stamps_s, period_s, times.string());
+  if (const fs::path file = sequence.path / "calib.txt"; fs::exists(file)) {
+    dataset.calibration = read_calibration_file(file);
+  }
+  if (const fs::path file = poses_file(sequence); fs::exists(file)) {
+    dataset.truth = lidar_truth(scans, read_kitti_poses(file), dataset.calibration.T_camera0_lidar,
+                                file.string(), dataset.warnings);
+  }
   dataset.scans = std::make_unique<ScanFiles>(
       std::move(scans),
       ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = true});

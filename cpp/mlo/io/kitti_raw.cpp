@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mlo/io/calibration.hpp"
+#include "mlo/io/pose_files.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -67,6 +69,11 @@ Dataset open_kitti_raw(const SequenceFolder& drive) {
   std::vector<ScanFile> scans = list_numbered_scans(folder / "data", ".bin");
   dataset.warnings = set_stamps(scans, stamps_s, period_s, (folder / "timestamps.txt").string());
   set_durations(scans, folder, period_s);
+  dataset.calibration = read_raw_calibration(drive.path.parent_path());
+  if (const fs::path oxts = drive.path / "oxts"; fs::exists(oxts / "data")) {
+    dataset.truth = lidar_truth(scans, read_oxts_folder(oxts), dataset.calibration.T_imu_lidar, oxts.string(),
+                                dataset.warnings);
+  }
   dataset.scans = std::make_unique<ScanFiles>(
       std::move(scans),
       ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});

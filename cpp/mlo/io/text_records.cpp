@@ -64,6 +64,7 @@ std::vector<std::string> read_lines(const std::filesystem::path& file) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     lines.push_back(line);
   }
+  while (!lines.empty() && trimmed(lines.back()).empty()) lines.pop_back();
   return lines;
 }
 

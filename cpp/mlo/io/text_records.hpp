@@ -7,7 +7,7 @@
 
 namespace mlo {
 
-/// The lines of a text file, without their ends (also \r); an empty last line is left out.
+/// The lines of a text file, without their ends (also \r); blank lines at its end are left out.
 /// @throws InputError if the file cannot be opened
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 
