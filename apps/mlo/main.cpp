@@ -11,6 +11,9 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.set_version_flag("--version", MLO_VERSION);
   program.failure_message(CLI::FailureMessage::help);
+#ifdef MLO_WITH_SIMULATOR
+  mlo::apps::add_simulate(program);
+#endif
   try {
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {

@@ -1,10 +1,10 @@
 #include "mlo/simulator/camera.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "mlo/simulator/angles.hpp"
 
@@ -53,7 +53,8 @@ std::string matrix_row(const Eigen::Matrix<double, 3, 4>& matrix) {
 
 std::string projections(const Rig& rig) {
   std::string text;
-  for (int camera = 0; camera < 4; ++camera) text += fmt::format("P{}: {}\n", camera, matrix_row(rig.projection()));
+  for (int camera = 0; camera < 4; ++camera)
+    text += fmt::format("P{}: {}\n", camera, matrix_row(rig.projection()));
   return text;
 }
 
@@ -92,13 +93,15 @@ std::optional<ImageView> project(const Rig& rig, const Box3d& box_lidar) {
 }
 
 CameraBox camera_box(const Rig& rig, const Box3d& box_lidar) {
-  const Eigen::Vector3d bottom = box_lidar.center_lidar_m - Eigen::Vector3d(0, 0, 0.5 * box_lidar.size_lwh_m.z());
+  const Eigen::Vector3d bottom =
+      box_lidar.center_lidar_m - Eigen::Vector3d(0, 0, 0.5 * box_lidar.size_lwh_m.z());
   const Eigen::Vector3d heading(std::cos(box_lidar.yaw_rad), std::sin(box_lidar.yaw_rad), 0.0);
   const Eigen::Vector3d heading_camera = rig.T_camera_lidar.rotation() * heading;
   CameraBox box;
   box.bottom_camera_m = rig.T_camera_lidar * bottom;
   box.rotation_y_rad = std::atan2(-heading_camera.z(), heading_camera.x());
-  box.alpha_rad = wrapped_rad(box.rotation_y_rad - std::atan2(box.bottom_camera_m.x(), box.bottom_camera_m.z()));
+  box.alpha_rad =
+      wrapped_rad(box.rotation_y_rad - std::atan2(box.bottom_camera_m.x(), box.bottom_camera_m.z()));
   return box;
 }
 
@@ -112,6 +115,8 @@ std::string odometry_calibration(const Rig& rig) {
   return projections(rig) + fmt::format("Tr: {}\n", kitti_row(rig.T_camera_lidar));
 }
 
-std::string kitti_row(const SE3& pose) { return matrix_row(pose.matrix().topRows<3>()); }
+std::string kitti_row(const SE3& pose) {
+  return matrix_row(pose.matrix().topRows<3>());
+}
 
 }  // namespace mlo::simulator

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
+
+#include <Eigen/Core>
 
 #include "mlo/core/box.hpp"
 #include "mlo/core/se3.hpp"
@@ -27,13 +28,14 @@ struct Rig {
 
 /// What the image shows of a box.
 struct ImageView {
-  Box2d box;                 ///< clipped to the image [px]
-  double truncation = 0.0;   ///< share of the unclipped rectangle that lies outside
+  Box2d box;                ///< clipped to the image [px]
+  double truncation = 0.0;  ///< share of the unclipped rectangle that lies outside
 };
 /// Nothing when no part of the box is in front of the camera and inside the image.
 std::optional<ImageView> project(const Rig& rig, const Box3d& box_lidar);
 
-/// A box as KITTI writes it: bottom middle in camera 0 [m], rotation about the camera's y axis, observation angle.
+/// A box as KITTI writes it: bottom middle in camera 0 [m], rotation about the camera's y axis, observation
+/// angle.
 struct CameraBox {
   Eigen::Vector3d bottom_camera_m = Eigen::Vector3d::Zero();
   double rotation_y_rad = 0.0;

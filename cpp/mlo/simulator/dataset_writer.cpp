@@ -1,11 +1,11 @@
 #include "mlo/simulator/dataset_writer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <span>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "mlo/io/atomic_file.hpp"
 #include "mlo/io/point_cloud_file.hpp"
@@ -25,7 +25,9 @@ void write_into(const fs::path& file, std::string_view content) {
   write_file_atomically(file, content);
 }
 
-std::string row_line(const SE3& pose) { return kitti_row(pose) + "\n"; }
+std::string row_line(const SE3& pose) {
+  return kitti_row(pose) + "\n";
+}
 
 }  // namespace
 

@@ -23,7 +23,8 @@ struct SimulatedFrame {
   std::string oxts;                               ///< a line
 };
 
-/// Writes the files of a simulation. Poses and maps are given in the map frame: that of the lidar at the first stamp.
+/// Writes the files of a simulation. Poses and maps are given in the map frame: that of the lidar at the
+/// first stamp.
 class DatasetWriter {
  public:
   /// Makes the folders and writes what is known at the beginning.
@@ -42,7 +43,8 @@ class DatasetWriter {
   SE3 T_map_world_;
   Rig rig_;
   std::filesystem::path scans_, point_labels_;
-  std::string label_02_, oxts_, objects_, poses_start_, poses_stamp_, poses_end_, poses_camera_, poses_imu_, times_;
+  std::string label_02_, oxts_, objects_, poses_start_, poses_stamp_, poses_end_, poses_camera_, poses_imu_,
+      times_;
   std::string noisy_, perfect_, noisy_ab3dmot_, perfect_ab3dmot_;
   std::size_t labels_written_ = 0;
 };

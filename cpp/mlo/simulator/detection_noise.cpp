@@ -1,19 +1,23 @@
 #include "mlo/simulator/detection_noise.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <fmt/format.h>
 
 #include "mlo/simulator/angles.hpp"
 
 namespace mlo::simulator {
 namespace {
 
-double logistic(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
+double logistic(double logit) {
+  return 1.0 / (1.0 + std::exp(-logit));
+}
 
-double horizontal_distance(const Box3d& box) { return box.center_lidar_m.head<2>().norm(); }
+double horizontal_distance(const Box3d& box) {
+  return box.center_lidar_m.head<2>().norm();
+}
 
 Box3d disturbed(const Box3d& truth, const DetectorErrors& errors, Random& random) {
   const double distance = horizontal_distance(truth);
@@ -77,11 +81,13 @@ int ab3dmot_type(ObjectClass object_class) {
 DetectorErrors DetectorErrors::none() {
   DetectorErrors errors;
   errors.position_m = errors.position_per_m = errors.size_share = errors.yaw_rad = errors.yaw_per_m = 0.0;
-  errors.flip_share = errors.miss_share = errors.half_points = errors.false_positives = errors.score_noise = 0.0;
+  errors.flip_share = errors.miss_share = errors.half_points = errors.false_positives = errors.score_noise =
+      0.0;
   return errors;
 }
 
-std::vector<Detection> detect(const std::vector<ObjectTruth>& objects, const DetectorErrors& errors, Random random) {
+std::vector<Detection> detect(const std::vector<ObjectTruth>& objects, const DetectorErrors& errors,
+                              Random random) {
   std::vector<Detection> detections;
   for (const ObjectTruth& object : objects) {
     Random own = random.fork(static_cast<std::uint64_t>(object.id));
@@ -100,7 +106,9 @@ std::vector<Detection> detect(const std::vector<ObjectTruth>& objects, const Det
   return detections;
 }
 
-std::string detection_csv_header() { return "frame,class,x,y,z,l,w,h,yaw,score\n"; }
+std::string detection_csv_header() {
+  return "frame,class,x,y,z,l,w,h,yaw,score\n";
+}
 
 std::string detection_csv_lines(std::size_t frame, const std::vector<Detection>& detections) {
   std::string lines;
@@ -124,11 +132,12 @@ std::string ab3dmot_lines(const Rig& rig, std::size_t frame, const std::vector<D
     const CameraBox box = camera_box(rig, detection.box);
     const Eigen::Vector3d& size = detection.box.size_lwh_m;
     const double p = std::clamp(detection.confidence, kSure, 1.0 - kSure);
-    lines += fmt::format("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
-                         "{:.4f}\n",
-                         frame, type, view->box.left_px, view->box.top_px, view->box.right_px, view->box.bottom_px,
-                         std::log(p / (1.0 - p)), size.z(), size.y(), size.x(), box.bottom_camera_m.x(),
-                         box.bottom_camera_m.y(), box.bottom_camera_m.z(), box.rotation_y_rad, box.alpha_rad);
+    lines += fmt::format(
+        "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
+        "{:.4f}\n",
+        frame, type, view->box.left_px, view->box.top_px, view->box.right_px, view->box.bottom_px,
+        std::log(p / (1.0 - p)), size.z(), size.y(), size.x(), box.bottom_camera_m.x(),
+        box.bottom_camera_m.y(), box.bottom_camera_m.z(), box.rotation_y_rad, box.alpha_rad);
   }
   return lines;
 }

@@ -1,10 +1,10 @@
 #include "mlo/simulator/ground_truth.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+
+#include <fmt/format.h>
 
 #include "mlo/simulator/surfaces.hpp"
 
@@ -32,7 +32,8 @@ double visible_share(const Scene& scene, const SceneObject& object, const RayWor
     const std::size_t stride = 1 + part.mesh.triangles.size() / kProbes;
     for (std::size_t i = 0; i < part.mesh.triangles.size(); i += stride) {
       const auto& [a, b, c] = part.mesh.triangles[i].corners;
-      const Eigen::Vector3f middle = (part.mesh.vertices[a] + part.mesh.vertices[b] + part.mesh.vertices[c]) / 3.0F;
+      const Eigen::Vector3f middle =
+          (part.mesh.vertices[a] + part.mesh.vertices[b] + part.mesh.vertices[c]) / 3.0F;
       const Eigen::Vector3d ray = T_world_part * middle.cast<double>() - lidar_world;
       const auto hit = world.cast(lidar_world, ray.normalized(), fraction, ray.norm() + kTolerance_m);
       if (!hit) continue;
@@ -53,12 +54,17 @@ std::string label_type(ObjectClass object_class) {
   return name;
 }
 
-int occlusion_level(double visible_share) { return visible_share > 0.75 ? 0 : visible_share > 0.35 ? 1 : 2; }
-int truncation_level(double truncation) { return truncation < 0.05 ? 0 : truncation < 0.5 ? 1 : 2; }
+int occlusion_level(double visible_share) {
+  return visible_share > 0.75 ? 0 : visible_share > 0.35 ? 1 : 2;
+}
+int truncation_level(double truncation) {
+  return truncation < 0.05 ? 0 : truncation < 0.5 ? 1 : 2;
+}
 
 }  // namespace
 
-std::vector<ObjectTruth> objects_at(const Scene& scene, const RayWorld& world, const Sweep& sweep, double reach_m) {
+std::vector<ObjectTruth> objects_at(const Scene& scene, const RayWorld& world, const Sweep& sweep,
+                                    double reach_m) {
   std::unordered_map<int, std::size_t> points;
   for (const SimulatedPoint& point : sweep.points) {
     if (point.object_id > 0) ++points[point.object_id];
@@ -83,7 +89,8 @@ std::vector<ObjectTruth> objects_at(const Scene& scene, const RayWorld& world, c
     truth.detectable = object.detectable;
     truth.box_lidar = upright_box(T_world_lidar.inverse() * T_world_body, model.size_lwh_m);
     truth.points = points[object.id];
-    truth.visible_share = visible_share(scene, object, world, sweep, T_world_lidar.translation());
+    if (truth.points > 0)
+      truth.visible_share = visible_share(scene, object, world, sweep, T_world_lidar.translation());
     objects.push_back(truth);
   }
   return objects;
@@ -93,7 +100,8 @@ std::uint32_t point_label(const SimulatedPoint& point, const std::vector<ObjectT
   if (point.object_id == 0) return semantic_label(point.surface);
   const auto truth = std::ranges::lower_bound(objects, point.object_id, {}, &ObjectTruth::id);
   if (truth == objects.end() || truth->id != point.object_id) return semantic_label(point.surface);
-  return static_cast<std::uint32_t>(point.object_id) << 16 | semantic_label(truth->object_class, truth->moving);
+  return static_cast<std::uint32_t>(point.object_id) << 16 |
+         semantic_label(truth->object_class, truth->moving);
 }
 
 std::string label_lines(const Rig& rig, std::size_t frame, const std::vector<ObjectTruth>& objects) {
@@ -103,23 +111,25 @@ std::string label_lines(const Rig& rig, std::size_t frame, const std::vector<Obj
     if (object.points < kMinLabelPoints || !view) continue;
     const CameraBox box = camera_box(rig, object.box_lidar);
     const Eigen::Vector3d& size = object.box_lidar.size_lwh_m;
-    lines += fmt::format("{} {} {} {} {} {:.6f} {:.2f} {:.2f} {:.2f} {:.2f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} "
-                         "{:.6f}\n",
-                         frame, object.id, label_type(object.object_class), truncation_level(view->truncation),
-                         occlusion_level(object.visible_share), box.alpha_rad, view->box.left_px, view->box.top_px,
-                         view->box.right_px, view->box.bottom_px, size.z(), size.y(), size.x(),
-                         box.bottom_camera_m.x(), box.bottom_camera_m.y(), box.bottom_camera_m.z(),
-                         box.rotation_y_rad);
+    lines += fmt::format(
+        "{} {} {} {} {} {:.6f} {:.2f} {:.2f} {:.2f} {:.2f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} "
+        "{:.6f}\n",
+        frame, object.id, label_type(object.object_class), truncation_level(view->truncation),
+        occlusion_level(object.visible_share), box.alpha_rad, view->box.left_px, view->box.top_px,
+        view->box.right_px, view->box.bottom_px, size.z(), size.y(), size.x(), box.bottom_camera_m.x(),
+        box.bottom_camera_m.y(), box.bottom_camera_m.z(), box.rotation_y_rad);
   }
   return lines;
 }
 
 std::string object_csv_header() {
-  return "frame,id,class,state,x_m,y_m,z_m,qx,qy,qz,qw,length_m,width_m,height_m,vx_mps,vy_mps,vz_mps,yaw_rate_radps,"
+  return "frame,id,class,state,x_m,y_m,z_m,qx,qy,qz,qw,length_m,width_m,height_m,vx_mps,vy_mps,vz_mps,yaw_"
+         "rate_radps,"
          "lidar_x_m,lidar_y_m,lidar_z_m,lidar_yaw_rad,points,visible_share,detectable\n";
 }
 
-std::string object_csv_lines(const SE3& T_map_world, std::size_t frame, const std::vector<ObjectTruth>& objects) {
+std::string object_csv_lines(const SE3& T_map_world, std::size_t frame,
+                             const std::vector<ObjectTruth>& objects) {
   std::string lines;
   for (const ObjectTruth& object : objects) {
     const SE3 pose = T_map_world * object.T_world_object;
@@ -128,12 +138,13 @@ std::string object_csv_lines(const SE3& T_map_world, std::size_t frame, const st
     const Eigen::Vector3d& size = object.box_lidar.size_lwh_m;
     const Eigen::Vector3d v = T_map_world.rotation() * object.velocity_world_mps;
     const Eigen::Vector3d& c = object.box_lidar.center_lidar_m;
-    lines += fmt::format("{},{},{},{},{:.5f},{:.5f},{:.5f},{:.8f},{:.8f},{:.8f},{:.8f},{:.4f},{:.4f},{:.4f},", frame,
-                         object.id, to_string(object.object_class), object.moving ? "moving" : "at_rest", p.x(), p.y(),
-                         p.z(), q.x(), q.y(), q.z(), q.w(), size.x(), size.y(), size.z());
-    lines += fmt::format("{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.6f},{},{:.3f},{}\n", v.x(), v.y(), v.z(),
-                         object.yaw_rate_radps, c.x(), c.y(), c.z(), object.box_lidar.yaw_rad, object.points,
-                         object.visible_share, object.detectable ? 1 : 0);
+    lines +=
+        fmt::format("{},{},{},{},{:.5f},{:.5f},{:.5f},{:.8f},{:.8f},{:.8f},{:.8f},{:.4f},{:.4f},{:.4f},",
+                    frame, object.id, to_string(object.object_class), object.moving ? "moving" : "at_rest",
+                    p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), size.x(), size.y(), size.z());
+    lines += fmt::format("{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.6f},{},{:.3f},{}\n", v.x(),
+                         v.y(), v.z(), object.yaw_rate_radps, c.x(), c.y(), c.z(), object.box_lidar.yaw_rad,
+                         object.points, object.visible_share, object.detectable ? 1 : 0);
   }
   return lines;
 }

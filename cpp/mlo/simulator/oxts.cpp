@@ -1,9 +1,9 @@
 #include "mlo/simulator/oxts.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <fmt/format.h>
 
 namespace mlo::simulator {
 namespace {
@@ -36,21 +36,23 @@ std::string oxts_line(const ImuPoses& poses) {
   const double h = poses.step_s;
   const Eigen::Quaterniond world_to_body = pose.rotation().conjugate();
   const Eigen::Vector3d velocity = (after - before) / (2.0 * h);
-  const Eigen::Vector3d acceleration = (after - 2.0 * p + before) / (h * h) + Eigen::Vector3d(0, 0, kGravity_mps2);
+  const Eigen::Vector3d acceleration =
+      (after - 2.0 * p + before) / (h * h) + Eigen::Vector3d(0, 0, kGravity_mps2);
   const Eigen::Vector3d v = world_to_body * velocity;
   const Eigen::Vector3d a = world_to_body * acceleration;
   const Eigen::Vector3d w =
-      so3_log(poses.T_world_imu_before.rotation().conjugate() * poses.T_world_imu_after.rotation()) / (2.0 * h);
+      so3_log(poses.T_world_imu_before.rotation().conjugate() * poses.T_world_imu_after.rotation()) /
+      (2.0 * h);
   const Eigen::Matrix3d R = pose.rotation().toRotationMatrix();
   const double roll = std::atan2(R(2, 1), R(2, 2));
   const double pitch = std::asin(-R(2, 0));
   const double yaw = std::atan2(R(1, 0), R(0, 0));
   const auto [latitude, longitude] = geographic(p.x(), p.y());
-  std::string line = fmt::format("{:.12f} {:.12f} {:.6f} {:.10f} {:.10f} {:.10f}", latitude, longitude, p.z() + 100.0,
-                                 roll, pitch, yaw);
+  std::string line = fmt::format("{:.12f} {:.12f} {:.6f} {:.10f} {:.10f} {:.10f}", latitude, longitude,
+                                 p.z() + 100.0, roll, pitch, yaw);
   // north and east; then forward, left, up; KITTI repeats accelerations and rates for vehicle and level axes
-  for (const double value : {velocity.y(), velocity.x(), v.x(), v.y(), v.z(), a.x(), a.y(), a.z(), a.x(), a.y(), a.z(),
-                             w.x(), w.y(), w.z(), w.x(), w.y(), w.z()}) {
+  for (const double value : {velocity.y(), velocity.x(), v.x(), v.y(), v.z(), a.x(), a.y(), a.z(), a.x(),
+                             a.y(), a.z(), w.x(), w.y(), w.z(), w.x(), w.y(), w.z()}) {
     line += fmt::format(" {:.8f}", value);
   }
   return line + " 0.01 0.01 4 10 4 4 0";

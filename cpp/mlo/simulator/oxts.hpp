@@ -12,8 +12,8 @@ struct ImuPoses {
   double step_s = 0.01;
 };
 
-/// A line of KITTI's oxts format (30 numbers). The world's origin lies at 49 degrees north, 8.4 east; positions become
-/// latitude and longitude by the inverse of the Mercator projection that KITTI's tools use.
+/// A line of KITTI's oxts format (30 numbers). The world's origin lies at 49 degrees north, 8.4 east;
+/// positions become latitude and longitude by the inverse of the Mercator projection that KITTI's tools use.
 std::string oxts_line(const ImuPoses& poses);
 
 }  // namespace mlo::simulator

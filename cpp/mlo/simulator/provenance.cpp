@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "mlo/simulator/dataset_writer.hpp"
@@ -55,11 +54,14 @@ std::string_view scene_name(SceneKind kind) {
 std::string readme(const SimulationOptions& options) {
   const bool tracking = options.layout == Layout::tracking;
   return fmt::format(
-      "SYNTHETIC DATA: everything in this folder was computed by 'mlo simulate' (version {}); nothing was measured.\n"
-      "Scene '{}', {} m, seed {}, lidar {}. All options: synthetic.json. The same seed gives the same bytes.\n"
+      "SYNTHETIC DATA: everything in this folder was computed by 'mlo simulate' (version {}); nothing was "
+      "measured.\n"
+      "Scene '{}', {} m, seed {}, lidar {}. All options: synthetic.json. The same seed gives the same "
+      "bytes.\n"
       "The layout is that of KITTI's {} benchmark; neither data nor calibration of KITTI were used.\n{}{}",
-      options.version, scene_name(options.scene.kind), options.scene.length_m, options.scene.seed, options.sensor.name,
-      tracking ? "tracking" : "odometry", tracking ? kLayoutTracking : kLayoutOdometry, kTruth);
+      options.version, scene_name(options.scene.kind), options.scene.length_m, options.scene.seed,
+      options.sensor.name, tracking ? "tracking" : "odometry", tracking ? kLayoutTracking : kLayoutOdometry,
+      kTruth);
 }
 
 std::string provenance_json(const SimulationOptions& options) {

@@ -1,9 +1,9 @@
 #include "mlo/simulator/simulate.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <set>
+
+#include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
 #include "mlo/core/parallel.hpp"
@@ -29,12 +29,14 @@ void prepare_folder(const fs::path& out, bool overwrite) {
   std::error_code error;
   if (fs::exists(out) && !fs::is_empty(out)) {
     if (!overwrite) {
-      throw InputError(fmt::format("{}: the folder is not empty; choose another, or --overwrite", out.string()));
+      throw InputError(
+          fmt::format("{}: the folder is not empty; choose another, or --overwrite", out.string()));
     }
     if (!fs::exists(out / "synthetic.json")) {
-      throw InputError(fmt::format("{}: holds something else than an earlier simulation (no synthetic.json); choose "
-                                   "another folder",
-                                   out.string()));
+      throw InputError(
+          fmt::format("{}: holds something else than an earlier simulation (no synthetic.json); choose "
+                      "another folder",
+                      out.string()));
     }
     fs::remove_all(out);
   }
@@ -42,7 +44,9 @@ void prepare_folder(const fs::path& out, bool overwrite) {
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
 }
 
-float to_millimetres(float value_m) { return std::round(value_m * 1000.0F) / 1000.0F; }
+float to_millimetres(float value_m) {
+  return std::round(value_m * 1000.0F) / 1000.0F;
+}
 
 /// Moves each point to where it would have been seen at the stamp, had nothing but the robot moved.
 void compensate(std::vector<Point>& points, const Scene& scene, const Sweep& sweep, int columns) {
@@ -54,11 +58,14 @@ void compensate(std::vector<Point>& points, const Scene& scene, const Sweep& swe
     const double time_s = sweep.start_s + fraction * (sweep.end_s - sweep.start_s);
     T_stamp_column[column] = T_stamp_world * scene.robot.T_world_lidar(scene.terrain, time_s);
   }
-  parallel_for_each_index(points.size(), [&](std::size_t i) {
-    const Eigen::Vector3d moved =
-        T_stamp_column[column_of(points[i].sweep_fraction)] * points[i].p_lidar.cast<double>();
-    points[i].p_lidar = moved.cast<float>().unaryExpr(&to_millimetres);
-  }, 4096);
+  parallel_for_each_index(
+      points.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3d moved =
+            T_stamp_column[column_of(points[i].sweep_fraction)] * points[i].p_lidar.cast<double>();
+        points[i].p_lidar = moved.cast<float>().unaryExpr(&to_millimetres);
+      },
+      4096);
 }
 
 std::string oxts_at(const Scene& scene, double time_s) {
@@ -120,8 +127,8 @@ SimulationReport simulate(const SimulationOptions& requested, const fs::path& ou
   SimulationReport report;
   std::set<int> met;
   for (std::size_t i = 0; i < scans; ++i) {
-    const Sweep sweep = scan(scene, world, options.sensor, options.errors, period_s * static_cast<double>(i), i,
-                             options.scene.seed);
+    const Sweep sweep = scan(scene, world, options.sensor, options.errors, period_s * static_cast<double>(i),
+                             i, options.scene.seed);
     const SimulatedFrame frame = make_frame(options, scene, world, sweep, i);
     writer.write(frame);
     map.add(sweep, T_map_world);

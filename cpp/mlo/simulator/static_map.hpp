@@ -1,13 +1,14 @@
 #pragma once
 
-#include <tsl/robin_set.h>
-
 #include <cstdint>
 #include <vector>
+
+#include <tsl/robin_set.h>
 
 #include "mlo/core/se3.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/simulator/lidar_model.hpp"
+#include "mlo/simulator/random.hpp"
 
 namespace mlo::simulator {
 
@@ -20,8 +21,12 @@ class StaticMap {
   const std::vector<MapPoint>& points() const { return points_; }
 
  private:
+  /// Neighbouring voxels have neighbouring keys: without mixing, they would crowd the table.
+  struct KeyHash {
+    std::size_t operator()(std::uint64_t key) const { return mix(key, 0); }
+  };
   double voxel_m_;
-  tsl::robin_set<std::uint64_t> taken_;
+  tsl::robin_set<std::uint64_t, KeyHash> taken_;
   std::vector<MapPoint> points_;
 };
 
