@@ -65,8 +65,10 @@ void add_simulate(CLI::App& program) {
       program.add_subcommand("simulate", "Write a simulated drive with exact truth in a KITTI layout");
   const auto options = std::make_shared<Options>();
   SimulationOptions& simulation = options->simulation;
+  std::map<std::string, SceneKind> scenes;
+  for (const auto& [name, kind] : simulator::kScenes) scenes.emplace(name, kind);
   command->add_option("--scene", simulation.scene.kind, "What to drive through")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SceneKind>{{"city", SceneKind::city}}))
+      ->transform(CLI::CheckedTransformer(scenes))
       ->required();
   command->add_option("--out", options->out, "Folder to write; must be empty or new")
       ->type_name("DIR")

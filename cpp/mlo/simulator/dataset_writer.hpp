@@ -53,6 +53,4 @@ class DatasetWriter {
 std::string readme(const SimulationOptions& options);
 std::string provenance_json(const SimulationOptions& options);
 
-std::string_view scene_name(SceneKind kind);
-
 }  // namespace mlo::simulator

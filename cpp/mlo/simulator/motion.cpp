@@ -28,8 +28,8 @@ Motion Motion::at_rest(const Eigen::Vector2d& p_world, double yaw_rad) {
 PlanarState Motion::at(double time_s) const {
   if (states_.empty()) return {};
   const double step = time_s / kStep_s;
-  if (step <= 0.0 || step >= static_cast<double>(states_.size() - 1)) {
-    PlanarState end = step <= 0.0 ? states_.front() : states_.back();
+  if (step < 0.0 || step >= static_cast<double>(states_.size() - 1)) {
+    PlanarState end = step < 0.0 ? states_.front() : states_.back();
     end.speed_mps = 0.0;
     end.yaw_rate_radps = 0.0;
     return end;

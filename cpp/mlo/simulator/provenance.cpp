@@ -43,14 +43,6 @@ detections/{noisy,perfect}.csv  boxes all round in the lidar frame: with a detec
 
 }  // namespace
 
-std::string_view scene_name(SceneKind kind) {
-  switch (kind) {
-    case SceneKind::city:
-      return "city";
-  }
-  return "";
-}
-
 std::string readme(const SimulationOptions& options) {
   const bool tracking = options.layout == Layout::tracking;
   return fmt::format(
@@ -59,7 +51,7 @@ std::string readme(const SimulationOptions& options) {
       "Scene '{}', {} m, seed {}, lidar {}. All options: synthetic.json. The same seed gives the same "
       "bytes.\n"
       "The layout is that of KITTI's {} benchmark; neither data nor calibration of KITTI were used.\n{}{}",
-      options.version, scene_name(options.scene.kind), options.scene.length_m, options.scene.seed,
+      options.version, name_of(options.scene.kind), options.scene.length_m, options.scene.seed,
       options.sensor.name, tracking ? "tracking" : "odometry", tracking ? kLayoutTracking : kLayoutOdometry,
       kTruth);
 }
@@ -71,7 +63,7 @@ std::string provenance_json(const SimulationOptions& options) {
       {"synthetic", true},
       {"generator", "mlo simulate"},
       {"version", options.version},
-      {"scene", scene_name(options.scene.kind)},
+      {"scene", name_of(options.scene.kind)},
       {"length_m", options.scene.length_m},
       {"seed", options.scene.seed},
       {"max_scans", options.max_scans},

@@ -1,5 +1,7 @@
 #include "mlo/simulator/scene.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
@@ -18,6 +20,11 @@ SE3 T_world_object(const Scene& scene, const SceneObject& object, double time_s)
   return T_world_ground(scene, object, time_s) * SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, half_height});
 }
 
+std::string_view name_of(SceneKind kind) {
+  const auto scene = std::ranges::find(kScenes, kind, &NamedScene::kind);
+  return scene == kScenes.end() ? "" : scene->name;
+}
+
 Scene make_scene(const SceneOptions& options) {
   constexpr double kShortest_m = 1.0;
   constexpr double kLongest_m = 5000.0;
@@ -28,6 +35,18 @@ Scene make_scene(const SceneOptions& options) {
   switch (options.kind) {
     case SceneKind::city:
       return make_city(options);
+    case SceneKind::suburb:
+      return make_suburb(options);
+    case SceneKind::highway:
+      return make_highway(options);
+    case SceneKind::tunnel:
+      return make_tunnel(options);
+    case SceneKind::train:
+      return make_train(options);
+    case SceneKind::jam:
+      return make_jam(options);
+    case SceneKind::parking:
+      return make_parking(options);
   }
   throw InputError("simulate: unknown scene");
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mlo/core/box.hpp"
@@ -46,7 +48,7 @@ SE3 T_world_ground(const Scene& scene, const SceneObject& object, double time_s)
 /// Pose of an object's body-fixed frame: origin at the centre of its box.
 SE3 T_world_object(const Scene& scene, const SceneObject& object, double time_s);
 
-enum class SceneKind { city };
+enum class SceneKind { city, suburb, highway, tunnel, train, jam, parking };
 
 struct SceneOptions {
   SceneKind kind = SceneKind::city;
@@ -54,10 +56,30 @@ struct SceneOptions {
   std::uint64_t seed = 1;
 };
 
+struct NamedScene {
+  std::string_view name;
+  SceneKind kind;
+};
+/// All kinds, with their names.
+constexpr std::array<NamedScene, 7> kScenes{{{"city", SceneKind::city},
+                                             {"suburb", SceneKind::suburb},
+                                             {"highway", SceneKind::highway},
+                                             {"tunnel", SceneKind::tunnel},
+                                             {"train", SceneKind::train},
+                                             {"jam", SceneKind::jam},
+                                             {"parking", SceneKind::parking}}};
+std::string_view name_of(SceneKind kind);
+
 /// @throws InputError when the length is too short or too long for the scene
 Scene make_scene(const SceneOptions& options);
 
 // One file per kind (scene_<kind>.cpp).
 Scene make_city(const SceneOptions& options);
+Scene make_suburb(const SceneOptions& options);
+Scene make_highway(const SceneOptions& options);
+Scene make_tunnel(const SceneOptions& options);
+Scene make_train(const SceneOptions& options);
+Scene make_jam(const SceneOptions& options);
+Scene make_parking(const SceneOptions& options);
 
 }  // namespace mlo::simulator
