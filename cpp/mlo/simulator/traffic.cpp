@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kFar_m = 1e6;
 constexpr double kCautionStep_m = 1.0;
+constexpr double kForesight_s = 0.5;  // makes up for the lag of the foot
 
 /// Highest speed at every metre such that the bends ahead can be reached with comfortable braking.
 std::vector<double> bend_speeds(const Path& lane, const TrafficRules& rules) {
@@ -86,7 +87,8 @@ std::vector<Motion> drive_lane(const Path& lane, const std::vector<Driver>& fron
         ahead_gap = s[i - 1][step] - 0.5 * front_to_back[i - 1].length_m - front;
         ahead_speed = speed[i - 1][step];
       }
-      const double desired = std::min(driver.desired_mps(time_s), limit_at(limits, s[i][step]));
+      const double desired =
+          std::min(driver.desired_mps(time_s), limit_at(limits, s[i][step] + kForesight_s * v));
       const double behind_vehicle = intelligent_driver(v, desired, ahead_gap, v - ahead_speed, rules);
       const double at_light =
           intelligent_driver(v, desired, gap_to_red_light(front, v, time_s, lights), v, rules);
