@@ -16,18 +16,21 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Flat parts of the robot around the lidar, in the lidar frame, read off the gaps in KITTI's lowest rings.
+/// Parts of the robot around and below the lidar, in the lidar frame: they explain the gaps in the lowest
+/// rings of KITTI's scans.
 struct RoofPart {
-  double x_min, x_max, half_width;
+  double x_min, x_max, y_min, y_max;
 };
 constexpr double kRoofBelow_m = 0.27;
-constexpr std::array kRoof{RoofPart{-1.35, -0.35, 0.47}, RoofPart{0.50, 0.85, 0.26}};
+constexpr std::array kRoof{RoofPart{-0.78, -0.30, -0.32, 0.32},  RoofPart{-1.10, -0.75, 0.33, 0.46},
+                           RoofPart{-1.10, -0.75, -0.50, -0.36}, RoofPart{0.10, 0.36, -0.82, -0.50},
+                           RoofPart{0.50, 0.72, -0.22, 0.22},    RoofPart{-0.60, -0.42, 0.42, 0.62}};
 
 bool hits_own_roof(const Eigen::Vector3d& direction_lidar) {
   if (direction_lidar.z() >= 0.0) return false;
   const Eigen::Vector3d p = direction_lidar * (-kRoofBelow_m / direction_lidar.z());
   return std::ranges::any_of(kRoof, [&](const RoofPart& part) {
-    return p.x() > part.x_min && p.x() < part.x_max && std::abs(p.y()) < part.half_width;
+    return p.x() > part.x_min && p.x() < part.x_max && p.y() > part.y_min && p.y() < part.y_max;
   });
 }
 
@@ -55,9 +58,14 @@ bool is_lost(const RayHit& hit, double level, const LidarErrors& errors, Random&
   return random.chance(errors.random_loss) || random.chance(mirrored) || random.chance(p_weak);
 }
 
+/// Full reflectance above one level of the signal, nothing below another: far road is black, as in KITTI's
+/// scans.
 float intensity(double reflectance, double level, Random& random) {
-  constexpr double kFullSignal = 0.15;
-  const double value = reflectance * std::min(1.0, level / kFullSignal) + 0.05 * random.normal();
+  constexpr double kBlack = 0.10;
+  constexpr double kFull = 0.40;
+  constexpr double kGrain = 0.08;  // standard deviation from place to place
+  const double share = std::clamp((level - kBlack) / (kFull - kBlack), 0.0, 1.0);
+  const double value = reflectance * share + kGrain * random.normal();
   return static_cast<float>(std::round(100.0 * std::clamp(value, 0.0, 0.99)) / 100.0);
 }
 

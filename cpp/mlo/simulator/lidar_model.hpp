@@ -14,7 +14,7 @@ namespace mlo::simulator {
 
 /// How far the simulated lidar is from a perfect one.
 struct LidarErrors {
-  double range_noise_m = 0.015;  ///< standard deviation
+  double range_noise_m = 0.024;  ///< standard deviation
   double max_range_m = 80.0;     ///< KITTI's scans end there
   double random_loss = 0.004;    ///< share of pulses lost for no reason
   /// Reflectance x distance law at which half of the pulses are lost; a larger value loses more of what is

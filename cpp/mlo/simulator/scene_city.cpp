@@ -12,7 +12,7 @@ constexpr double kHalfWidth_m = 5.7;  // two lanes and two rows of parked cars
 constexpr double kSidewalk_m = 2.8;
 constexpr double kLane_m = 1.75;  // of a lane's middle from the centre line
 constexpr double kTurnRadius_m = 11.0;
-constexpr double kArm_m = 80.0;  // how far a street goes on beyond its junction
+constexpr double kArm_m = 65.0;  // how far a street goes on beyond its junction
 constexpr double kLeadIn_m = 30.0;
 
 struct Block {
@@ -65,10 +65,11 @@ struct Crossing {
 void furnish(SceneBuilder& builder, const Street& street, const PlantCatalogue& plants, std::size_t lamp,
              std::size_t sign, std::size_t bin) {
   line_with_buildings(builder, street, {});
+  close_with_buildings(builder, street, {});
   line_with(builder, street,
             {.meshes = {lamp}, .offset_m = kHalfWidth_m + 0.5, .spacing_m = 28.0, .random_yaw = false});
   line_with(builder, street,
-            {.meshes = plants.trees, .offset_m = kHalfWidth_m + 0.9, .spacing_m = 13.0, .density = 0.4});
+            {.meshes = plants.trees, .offset_m = kHalfWidth_m + 0.9, .spacing_m = 11.0, .density = 0.55});
   line_with(builder, street,
             {.meshes = {sign, bin},
              .offset_m = kHalfWidth_m + 0.45,

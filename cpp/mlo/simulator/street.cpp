@@ -16,16 +16,7 @@ double facing_street(const PathPoint& point, double side) {
   return side > 0.0 ? point.heading_rad + std::numbers::pi : point.heading_rad;
 }
 
-void build_lot(SceneBuilder& builder, const Street& street, const Frontage& frontage, double s, double side,
-               double width) {
-  Random& random = builder.random;
-  const double depth = random.uniform(frontage.min_depth_m, frontage.max_depth_m);
-  const PathPoint point = street.centerline.at(s);
-  const double offset = street.half_width_m + street.sidewalk_m +
-                        frontage.setback_m * random.uniform(0.7, 1.3) + 0.5 * depth + 0.3;
-  const Footprint lot{point.p_world + side * offset * point.left(), point.heading_rad, width, depth};
-  if (!builder.site.is_free(lot)) return;
-  builder.site.take(lot);
+BuildingShape random_building(Random& random, const Frontage& frontage, double width, double depth) {
   BuildingShape shape;
   shape.width_m = width;
   shape.depth_m = depth;
@@ -35,7 +26,26 @@ void build_lot(SceneBuilder& builder, const Street& street, const Frontage& fron
   shape.window_gap_m = random.uniform(0.8, 1.8);
   shape.roof_rise_m = frontage.roof_rise_m * random.uniform(0.8, 1.2);
   shape.balconies = random.chance(0.35);
-  builder.stand(builder.add_mesh(make_building(shape)), lot.center, facing_street(point, side));
+  return shape;
+}
+
+/// A building on a free lot; its front (-y of its own frame) looks against the yaw's left.
+void build(SceneBuilder& builder, const Frontage& frontage, const Footprint& lot, double yaw) {
+  if (!builder.site.is_free(lot)) return;
+  builder.site.take(lot);
+  const BuildingShape shape = random_building(builder.random, frontage, lot.length_m, lot.width_m);
+  builder.stand(builder.add_mesh(make_building(shape)), lot.center, yaw);
+}
+
+void build_lot(SceneBuilder& builder, const Street& street, const Frontage& frontage, double s, double side,
+               double width) {
+  Random& random = builder.random;
+  const double depth = random.uniform(frontage.min_depth_m, frontage.max_depth_m);
+  const PathPoint point = street.centerline.at(s);
+  const double offset = street.half_width_m + street.sidewalk_m +
+                        frontage.setback_m * random.uniform(0.7, 1.3) + 0.5 * depth + 0.3;
+  build(builder, frontage, {point.p_world + side * offset * point.left(), point.heading_rad, width, depth},
+        facing_street(point, side));
 }
 
 }  // namespace
@@ -55,6 +65,17 @@ void line_with_buildings(SceneBuilder& builder, const Street& street, const Fron
         build_lot(builder, street, frontage, s + 0.5 * width, side, width);
       s += width + 0.15 + frontage.gap_m * random.uniform(0.7, 1.5);
     }
+  }
+}
+
+void close_with_buildings(SceneBuilder& builder, const Street& street, const Frontage& frontage) {
+  constexpr double kBeyond_m = 5.0;
+  for (const Path& way : {street.centerline, street.centerline.reversed()}) {
+    const double width = 2.0 * (street.half_width_m + street.sidewalk_m) + 4.0;
+    const PathPoint end =
+        way.at(way.length_m() + street.half_width_m + kBeyond_m + 0.5 * frontage.min_depth_m);
+    const double yaw = end.heading_rad - 0.5 * std::numbers::pi;
+    build(builder, frontage, {end.p_world, yaw, width, frontage.min_depth_m}, yaw);
   }
 }
 

@@ -31,6 +31,9 @@ struct Frontage {
 /// Buildings on both sides, facing the street.
 void line_with_buildings(SceneBuilder& builder, const Street& street, const Frontage& frontage);
 
+/// A building across each end of the street: what one looks at down a street.
+void close_with_buildings(SceneBuilder& builder, const Street& street, const Frontage& frontage);
+
 /// Meshes at regular places beside the street, where the ground is not another road.
 struct Row {
   std::vector<std::size_t> meshes;  ///< one is picked for each place

@@ -5,19 +5,19 @@ namespace mlo::simulator {
 SurfaceOptics optics(Surface surface) {
   switch (surface) {
     case Surface::road:
-      return {0.27, 0.0};
+      return {0.26, 0.0};
     case Surface::sidewalk:
-      return {0.36, 0.0};
+      return {0.32, 0.0};
     case Surface::grass:
-      return {0.40, 0.005};
+      return {0.33, 0.005};
     case Surface::wall:
-      return {0.40, 0.005};
+      return {0.35, 0.005};
     case Surface::window:
-      return {0.25, 0.55};
+      return {0.25, 0.45};
     case Surface::roof:
       return {0.30, 0.01};
     case Surface::leaf:
-      return {0.38, 0.03};
+      return {0.33, 0.02};
     case Surface::bark:
       return {0.30, 0.01};
     case Surface::pole:
