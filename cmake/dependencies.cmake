@@ -1,9 +1,7 @@
-# Everything comes from the system's packages (scripts/install_dependencies.sh).
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(TBB REQUIRED)
-find_package(fmt REQUIRED)
-find_package(spdlog REQUIRED)
-find_package(yaml-cpp REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(tsl-robin-map REQUIRED)
-find_package(nanoflann REQUIRED)
+# Everything comes from the system's packages (scripts/install_dependencies.sh). The libraries' own dependencies;
+# programs and tests find theirs where they are built.
+set(MLO_DEPENDENCIES "Eigen3 3.4" TBB fmt yaml-cpp nlohmann_json tsl-robin-map nanoflann)
+foreach(dependency IN LISTS MLO_DEPENDENCIES)
+  separate_arguments(arguments UNIX_COMMAND ${dependency})
+  find_package(${arguments} REQUIRED)
+endforeach()

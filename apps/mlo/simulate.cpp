@@ -1,5 +1,6 @@
 #include "mlo/simulator/simulate.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -9,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "apps/mlo/commands.hpp"
+#include "apps/mlo/config_options.hpp"
+#include "apps/mlo/progress.hpp"
 
 namespace mlo::apps {
 namespace {
@@ -23,7 +26,7 @@ using simulator::SimulationReport;
 struct Options {
   SimulationOptions simulation;
   bool compensated = false;
-  bool perfect_sensor = false;
+  ConfigArguments config;
   std::filesystem::path out;
 };
 
@@ -47,10 +50,16 @@ void run(Options options) {
   SimulationOptions& simulation = options.simulation;
   simulation.version = MLO_VERSION;
   if (options.compensated) simulation.layout = Layout::odometry;
-  if (options.perfect_sensor) {
-    simulation.errors.range_noise_m = simulation.errors.random_loss = simulation.errors.loss_level = 0.0;
-  }
-  const SimulationReport report = simulator::simulate(simulation, options.out, {});
+  PipelineConfig base;
+  base.sensor = simulator::default_sensor();
+  simulation.sensor = resolve(options.config, base).sensor;
+  std::unique_ptr<Progress> progress;
+  const auto show = [&](std::size_t done, std::size_t total) {
+    if (!progress) progress = std::make_unique<Progress>("scans", total);
+    progress->update(done);
+  };
+  const SimulationReport report = simulator::simulate(simulation, options.out, show);
+  if (progress) progress->finish();
   std::cout << fmt::format(
       "{}: {} scans, {} points each on average, {:.0f} m, {} objects met, {} map points\n"
       "All of it is synthetic: see {}\n",
@@ -90,16 +99,20 @@ void add_simulate(CLI::App& program) {
   command->add_flag("--overwrite", simulation.overwrite, "Replace an earlier simulation in the folder");
   command->add_option("--map-voxel", simulation.map_voxel_m, "Spacing of the true map's points [m]")
       ->capture_default_str();
-  command->add_flag("--perfect-sensor", options->perfect_sensor, "No range noise and no lost pulses");
+  add_config_options(*command, options->config);
+  OptionVisitor lidar{*command, "lidar", "Errors of the simulated lidar"};
+  simulation.errors.fields(lidar);
   OptionVisitor detector{*command, "detector", "Errors of the simulated detector"};
   simulation.detector.fields(detector);
   command->footer(R"(
 Writes scans, calibration, labels, detections (with and without errors), point labels, true poses at the start, stamp
-and end of each sweep, all objects, and the true static map; README.txt in the folder says what is what.
+and end of each sweep, all objects, and the true static map; README.txt in the folder says what is what. The lidar is
+KITTI's HDL-64E unless the configuration (--preset, --config, --set) changes its sensor section.
 
 Examples:
   mlo simulate --scene city --length 300 --seed 7 --out city
   mlo simulate --scene city --length 100 --compensated --out city_odometry
+  mlo simulate --scene tunnel --preset os1-64 --lidar-range-noise-m 0.01 --out tunnel
   mlo simulate --scene city --detector-miss-share 0.2 --detector-false-positives 2 --out bad_detector)");
   command->callback([options] { run(*options); });
 }

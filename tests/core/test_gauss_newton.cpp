@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "mlo/core/gauss_newton.hpp"
 #include "mlo/core/parallel.hpp"

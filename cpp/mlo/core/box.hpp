@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string_view>
+
+#include <Eigen/Core>
 
 #include "mlo/core/se3.hpp"
 

@@ -1,7 +1,8 @@
 #include "mlo/core/se3.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
+
+#include <Eigen/SVD>
 
 namespace mlo {
 namespace {

@@ -1,5 +1,10 @@
 #include "mlo/core/sensor.hpp"
 
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
 namespace mlo {
 
 std::vector<double> SensorConfig::elevations_deg() const {
@@ -26,6 +31,28 @@ SensorConfig hdl64e() {
   sensor.min_range_m = 2.7;
   sensor.max_range_m = 120.0;
   return sensor;
+}
+
+std::vector<std::string> SensorConfig::find_problems() const {
+  std::vector<std::string> problems;
+  if (!(max_range_m > min_range_m)) {
+    problems.push_back(
+        fmt::format("max_range_m ({}) must be larger than min_range_m ({})", max_range_m, min_range_m));
+  }
+  if (!(max_elevation_deg >= min_elevation_deg)) {
+    problems.push_back(fmt::format("max_elevation_deg ({}) must not be less than min_elevation_deg ({})",
+                                   max_elevation_deg, min_elevation_deg));
+  }
+  const auto& beams = beam_elevations_deg;
+  if (beams.empty()) return problems;
+  if (beams.size() != static_cast<std::size_t>(rings)) {
+    problems.push_back(
+        fmt::format("beam_elevations_deg has {} entries, but rings is {}", beams.size(), rings));
+  }
+  if (std::adjacent_find(beams.begin(), beams.end(), std::less_equal<>()) != beams.end()) {
+    problems.emplace_back("beam_elevations_deg must fall from the highest beam to the lowest");
+  }
+  return problems;
 }
 
 }  // namespace mlo

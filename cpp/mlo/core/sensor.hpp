@@ -47,6 +47,10 @@ struct SensorConfig {
 
   /// One elevation per ring [deg], highest first: the table, or evenly spaced; empty when rings is 0.
   std::vector<double> elevations_deg() const;
+
+  /// What contradicts itself, one sentence each: limits in the wrong order, a beam table of another length
+  /// than rings or not highest first.
+  std::vector<std::string> find_problems() const;
 };
 
 /// Velodyne HDL-64E as KITTI mounts and runs it: nominal elevations (upper 32 beams 1/3 degree apart, lower

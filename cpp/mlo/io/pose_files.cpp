@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDegToRad = std::numbers::pi / 180.0;
+// Files with few digits are off by 1e-3; anything beyond this is not a rotation at all.
+constexpr double kRotationTolerance = 1e-2;
 
 struct OxtsRecord {
   double latitude_deg = 0.0;
@@ -33,6 +35,22 @@ OxtsRecord parse_oxts(const std::string& line, const std::string& where) {
     throw InputError(fmt::format("{}: {} numbers, an oxts record has 30", where, v.size()));
   }
   return {v[0], v[1], v[2], {v[3], v[4], v[5]}};
+}
+
+SE3 parse_kitti_pose(const std::string& line, const std::string& where) {
+  const std::vector<double> row = parse_numbers(line, where);
+  if (row.size() != 12) {
+    throw InputError(fmt::format("{}: {} numbers, a KITTI pose has 12", where, row.size()));
+  }
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topRows<3>() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(row.data());
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const double error = (R * R.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (!matrix.allFinite() || !(error < kRotationTolerance) || R.determinant() < 0.0) {
+    throw InputError(
+        fmt::format("{}: no finite pose with a rotation; a KITTI pose is r11 r12 r13 tx r21 ...", where));
+  }
+  return SE3::from_matrix(matrix);
 }
 
 // Mercator projection, as KITTI's development kit defines the poses of its oxts data.
@@ -97,13 +115,7 @@ PoseList read_kitti_poses(const fs::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string where = fmt::format("{}:{}", file.string(), i + 1);
-    const std::vector<double> row = parse_numbers(lines[i], where);
-    if (row.size() != 12) {
-      throw InputError(fmt::format("{}: {} numbers, a KITTI pose has 12", where, row.size()));
-    }
-    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-    matrix.topRows<3>() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(row.data());
-    poses.push_back(SE3::from_matrix(matrix));
+    poses.push_back(parse_kitti_pose(lines[i], where));
   }
   return numbered(std::move(poses));
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "mlo/core/fields.hpp"
 #include "mlo/core/sensor.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/simulator/ray_world.hpp"
@@ -23,6 +24,15 @@ struct LidarErrors {
   bool own_roof = true;  ///< the robot's roof hides part of the lowest beams, as on KITTI's car
   /// Elevations are reported too low by this much: KITTI's odometry scans have 0.205 [deg].
   double elevation_bias_deg = 0.0;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("range_noise_m", range_noise_m, between(0.0, 10.0), "standard deviation of the ranges [m]");
+    visit("max_range_m", max_range_m, between(1.0, 1000.0), "no returns beyond; KITTI's end at 80 m [m]");
+    visit("random_loss", random_loss, between(0.0, 1.0), "share of the pulses lost for no reason");
+    visit("loss_level", loss_level, between(0.0, 10.0),
+          "signal at which half of the pulses are lost: higher loses more of what is far, dark or grazing");
+  }
 };
 
 /// One return with its truth.

@@ -1,0 +1,20 @@
+# mlo_embed_presets(result): writes a source file that holds config/presets/*.yaml as text and returns its path.
+# Each preset's first line is "# <summary>".
+function(mlo_embed_presets result)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/config/presets/*.yaml)
+  list(SORT files)
+  set(MLO_PRESET_ENTRIES "")
+  foreach(file IN LISTS files)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    get_filename_component(name ${file} NAME_WE)
+    file(READ ${file} text)
+    if(NOT text MATCHES "^# ([^\n]+)\n")
+      message(FATAL_ERROR "${file}: the first line must be '# <summary>'")
+    endif()
+    string(APPEND MLO_PRESET_ENTRIES
+      "    Preset{\"${name}\", R\"yaml(${CMAKE_MATCH_1})yaml\",\n           R\"yaml(${text})yaml\"},\n")
+  endforeach()
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded_presets.cpp)
+  configure_file(${PROJECT_SOURCE_DIR}/cpp/mlo/pipeline/embedded_presets.cpp.in ${output} @ONLY)
+  set(${result} ${output} PARENT_SCOPE)
+endfunction()

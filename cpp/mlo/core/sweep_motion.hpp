@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mlo/core/se3.hpp"
+
+namespace mlo {
+
+/// Motion of the lidar during a sweep, constant in the body frame.
+///
+/// The paper refers points to the end of their sweep (reference_fraction 1); the middle (0.5) keeps errors of
+/// the assumed velocity smaller and unbiased. For motion-compensated scans use SweepMotion::none().
+class SweepMotion {
+ public:
+  /// @param T_previous_current  increment over one sweep, as between the reference times of consecutive scans
+  /// @param reference_fraction  sweep fraction to which points are brought
+  SweepMotion(const SE3& T_previous_current, double reference_fraction)
+      : xi_(T_previous_current.log()), reference_fraction_(reference_fraction) {}
+  static SweepMotion none() { return {SE3(), 0.5}; }
+
+  /// Pose of the lidar at a sweep fraction, in the lidar frame at the reference time; Eq. (5) as in NOTES.
+  SE3 T_reference_at(double sweep_fraction) const {
+    return SE3::exp((sweep_fraction - reference_fraction_) * xi_);
+  }
+
+  /// The point where it would have been measured at the reference time, by the third-order series of the
+  /// exponential: exact to a millimetre at 50 m for turns up to 6 degrees a sweep.
+  Eigen::Vector3d undistort(const Eigen::Vector3d& p_lidar, double sweep_fraction) const {
+    const double s = sweep_fraction - reference_fraction_;
+    const Eigen::Vector3d w = s * xi_.tail<3>();
+    const Eigen::Vector3d first = s * xi_.head<3>() + w.cross(p_lidar);
+    const Eigen::Vector3d second = w.cross(first);
+    return p_lidar + first + 0.5 * second + w.cross(second) / 6.0;
+  }
+
+  double reference_fraction() const { return reference_fraction_; }
+
+ private:
+  SE3::Tangent xi_;
+  double reference_fraction_;
+};
+
+}  // namespace mlo
