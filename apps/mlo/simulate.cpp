@@ -75,9 +75,14 @@ void add_simulate(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   SimulationOptions& simulation = options->simulation;
   std::map<std::string, SceneKind> scenes;
-  for (const auto& [name, kind] : simulator::kScenes) scenes.emplace(name, kind);
-  command->add_option("--scene", simulation.scene.kind, "What to drive through")
-      ->transform(CLI::CheckedTransformer(scenes))
+  std::string names;
+  for (const auto& [name, kind] : simulator::kScenes) {
+    scenes.emplace(name, kind);
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  }
+  command->add_option("--scene", simulation.scene.kind, "What to drive through: " + names)
+      ->transform(CLI::CheckedTransformer(scenes).description(""))
+      ->type_name("NAME")
       ->required();
   command->add_option("--out", options->out, "Folder to write; must be empty or new")
       ->type_name("DIR")
@@ -87,11 +92,14 @@ void add_simulate(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--scans", simulation.max_scans, "Stop after this many scans; 0: the whole way")
       ->capture_default_str();
-  auto* layout = command
-                     ->add_option("--layout", simulation.layout,
-                                  "KITTI's layout: tracking (raw scans) or odometry (compensated)")
-                     ->transform(CLI::CheckedTransformer(std::map<std::string, Layout>{
-                         {"tracking", Layout::tracking}, {"odometry", Layout::odometry}}));
+  auto* layout =
+      command
+          ->add_option("--layout", simulation.layout,
+                       "KITTI's layout: tracking (raw scans) or odometry (compensated)")
+          ->transform(CLI::CheckedTransformer(std::map<std::string, Layout>{{"tracking", Layout::tracking},
+                                                                            {"odometry", Layout::odometry}})
+                          .description(""))
+          ->type_name("NAME");
   command
       ->add_flag("--compensated", options->compensated,
                  "Motion-compensated scans: the same as --layout odometry")

@@ -41,11 +41,11 @@ struct DetectorErrors {
     visit("yaw_per_m", yaw_per_m, between(0.0, 1.0), "growth of that noise per metre of distance [rad/m]");
     visit("flip_share", flip_share, between(0.0, 1.0), "share of boxes turned by half a turn");
     visit("miss_share", miss_share, between(0.0, 1.0), "share of well visible objects that are missed");
-    visit("half_points", half_points, at_least(0.0), "returns at which half of the objects are missed");
+    visit("half_points", half_points, between(0.0, 1e4), "returns at which half of the objects are missed");
     visit("false_positives", false_positives, between(0.0, 100.0),
           "boxes around nothing per scan, on average");
     visit("score_noise", score_noise, between(0.0, 10.0), "noise of the logit of the confidence");
-    visit("max_range_m", max_range_m, at_least(0.0), "nothing is reported beyond [m]");
+    visit("max_range_m", max_range_m, between(0.0, 1000.0), "nothing is reported beyond [m]");
   }
 };
 
