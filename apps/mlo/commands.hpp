@@ -10,6 +10,7 @@ namespace mlo::apps {
 void add_run(CLI::App& program);
 void add_eval(CLI::App& program);
 void add_config(CLI::App& program);
+void add_simulate(CLI::App& program);  // only where the simulator is built
 void add_info(CLI::App& program);
 
 }  // namespace mlo::apps

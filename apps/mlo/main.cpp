@@ -92,6 +92,9 @@ int run(int argc, char** argv) {
   mlo::apps::add_eval(program);
   mlo::apps::add_config(program);
   mlo::apps::add_info(program);
+#ifdef MLO_WITH_SIMULATOR
+  mlo::apps::add_simulate(program);
+#endif
 
   try {
     program.parse(argc, argv);
