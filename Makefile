@@ -9,13 +9,14 @@ BASE ?=
 
 install = @if [ "$(INSTALL)" != no ]; then scripts/install_dependencies.sh $(1); fi
 
-.PHONY: help build demo test bench format lint clean
+.PHONY: help build demo demo-simulated test bench format lint clean
 
 help:
 	@echo "MLO: multi-object lidar odometry"
 	@echo
 	@echo "  make build             build the program: $(BUILD)/bin/mlo"
-	@echo "  make demo DATA=FOLDER  run it on a folder of scans (KITTI layouts, .bin, .pcd, .ply); results in $(OUT)"
+	@echo "  make demo              simulate a drive, run on it, evaluate; results in $(OUT)"
+	@echo "  make demo DATA=FOLDER  run on a folder of scans instead (KITTI layouts, .bin, .pcd, .ply)"
 	@echo "  make test              build and run all tests"
 	@echo "  make bench             build and run the benchmarks; DATA=FOLDER (docs/results.md) adds KITTI's sequences"
 	@echo "  make format            format the C++ sources"
@@ -29,9 +30,19 @@ build:
 	@cmake --preset release
 	@cmake --build $(BUILD) --target mlo -j $(JOBS)
 
+# Without DATA a drive is simulated first: everything that the demo needs comes with the project.
 demo: build
-	@if [ -z "$(DATA)" ]; then echo "Give a folder of scans: make demo DATA=FOLDER" >&2; exit 2; fi
-	$(BUILD)/bin/mlo run "$(DATA)" --out "$(OUT)"
+	@if [ -n "$(DATA)" ]; then $(BUILD)/bin/mlo run "$(DATA)" --out "$(OUT)"; else $(MAKE) --no-print-directory demo-simulated; fi
+
+demo-simulated:
+	@echo "Simulating a drive through a city (synthetic data):"
+	@$(BUILD)/bin/mlo simulate --scene city --length 150 --seed 7 --overwrite --out "$(OUT)/drive"
+	@echo "Estimating trajectory and static map, with the simulated detector's boxes cut out:"
+	@$(BUILD)/bin/mlo run "$(OUT)/drive" --detections "$(OUT)/drive/detections/noisy.csv" --out "$(OUT)/run"
+	@$(BUILD)/bin/mlo eval trajectory --truth "$(OUT)/drive/truth/poses_stamp.txt" --estimate "$(OUT)/run/trajectory.txt" \
+	  --plot "$(OUT)/trajectory.svg"
+	@echo
+	@echo "Look at: $(OUT)/trajectory.svg (path and errors), $(OUT)/run/static_map.ply (map), $(OUT)/run/run.json (report)"
 
 test:
 	$(call install,build)

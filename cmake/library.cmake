@@ -1,7 +1,8 @@
 # mlo_add_library(name SOURCES ... HEADERS ... DEPENDS ... PRIVATE_DEPENDS ...)
-# One static library mlo::name per folder; its headers are installed as <mlo/name/...>.
+# One static library mlo::name per folder; its headers are installed as <mlo/name/...>, unless NOT_INSTALLED is
+# given: for what only the program uses.
 function(mlo_add_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(mlo_${name} STATIC ${ARG_SOURCES})
   add_library(mlo::${name} ALIAS mlo_${name})
   set_target_properties(mlo_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
@@ -13,7 +14,9 @@ function(mlo_add_library name)
     target_link_libraries(mlo_${name} PUBLIC $<BUILD_INTERFACE:mlo_sanitizers>)
   endif()
   mlo_set_warnings(mlo_${name})
-  set_property(GLOBAL APPEND PROPERTY MLO_LIBRARIES mlo_${name})
+  if(NOT ARG_NOT_INSTALLED)
+    set_property(GLOBAL APPEND PROPERTY MLO_LIBRARIES mlo_${name})
+  endif()
 endfunction()
 
 # mlo_add_test(name SOURCES ... DEPENDS ...): one GoogleTest program per folder, registered with ctest.

@@ -70,8 +70,8 @@ void expect_same_neighbours(const LocalMap& map, const PlainMap& plain, int k) {
     const NearestPoints found = map.nearest(query, k, 100.0F);
     ASSERT_EQ(static_cast<std::size_t>(found.count), std::min(static_cast<std::size_t>(k), expected.size()));
     for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
-      EXPECT_EQ(found.squared_distances_m2[i], expected[i]);
-      EXPECT_EQ((found.points[i] - query).squaredNorm(), found.squared_distances_m2[i]);
+      EXPECT_FLOAT_EQ(found.squared_distances_m2[i], expected[i]);
+      EXPECT_FLOAT_EQ((found.points[i] - query).squaredNorm(), found.squared_distances_m2[i]);
     }
   }
 }

@@ -208,7 +208,7 @@ TEST(Simulate, SaysThatItIsSyntheticWithSeedVersionAndOptions) {
   EXPECT_EQ(json.at("seed"), 9);
   EXPECT_EQ(json.at("version"), "test");
   EXPECT_EQ(json.at("detector_errors").at("miss_share"), 0.125);
-  EXPECT_EQ(json.at("lidar_errors").at("elevation_bias_deg"), kOdometryElevationBias_deg);
+  EXPECT_EQ(json.at("lidar_errors").at("elevation_bias_deg"), options.sensor.vertical_correction_deg);
 }
 
 TEST(Simulate, KeepsItsHandsOffFoldersOfOthers) {

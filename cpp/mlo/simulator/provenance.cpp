@@ -8,7 +8,8 @@ namespace {
 
 constexpr const char* kLayoutTracking = R"(
 velodyne/0000/NNNNNN.bin     scans as the sensor gives them (not motion-compensated): x y z intensity, float32,
-                             ring by ring from the highest, by azimuth growing from ahead
+                             ring by ring from the highest, by azimuth growing from ahead; elevations too low by
+                             the bias in synthetic.json, as KITTI's are by 0.205 degrees
 labels/0000/NNNNNN.label     uint32 per point: SemanticKITTI class in the lower 16 bits, object id in the upper 16;
                              10 car, 18 truck, 20 van and others, 30 person, 31 cyclist are movable and at rest,
                              252 to 259 are moving, all others are static
@@ -21,7 +22,8 @@ detections/{noisy,perfect}/0000.txt   boxes in the camera's view in the format t
 
 constexpr const char* kLayoutOdometry = R"(
 sequences/00/velodyne/NNNNNN.bin  scans compensated for the robot's motion to the time at which the sensor looks
-                                  ahead, rounded to 1 mm, elevations 0.205 degrees too low, as KITTI odometry's
+                                  ahead, rounded to 1 mm, elevations too low by the bias in synthetic.json,
+                                  as KITTI odometry's
 sequences/00/labels/NNNNNN.label  uint32 per point: SemanticKITTI class in the lower 16 bits, object id in the upper
                                   16; 10 car, 18 truck, 20 van and others, 30 person, 31 cyclist are movable and at
                                   rest, 252 to 259 are moving, all others are static

@@ -110,7 +110,7 @@ SensorConfig default_sensor() {
 SimulationReport simulate(const SimulationOptions& requested, const fs::path& out,
                           const std::function<void(std::size_t, std::size_t)>& progress) {
   SimulationOptions options = requested;
-  options.errors.elevation_bias_deg = options.layout == Layout::odometry ? kOdometryElevationBias_deg : 0.0;
+  options.errors.elevation_bias_deg = options.sensor.vertical_correction_deg;  // what readers will undo
   check(options);
   const Scene scene = make_scene(options.scene);
   prepare_folder(out, options.overwrite);

@@ -13,12 +13,9 @@
 namespace mlo::simulator {
 
 /// Which of KITTI's folder layouts is written. With tracking, scans are as the sensor gives them; with
-/// odometry they are motion-compensated, rounded to 1 mm, and their elevations biased, as those of that
-/// benchmark are.
+/// odometry they are motion-compensated and rounded to 1 mm, as those of that benchmark are. The elevations
+/// of both carry the bias that readers correct (SensorConfig::vertical_correction_deg).
 enum class Layout { tracking, odometry };
-
-/// 0.205 degrees (Deschaud, IMLS-SLAM, ICRA 2018).
-constexpr double kOdometryElevationBias_deg = 0.205;
 
 /// The HDL-64E as KITTI's car spins it: 2160 firings per revolution.
 SensorConfig default_sensor();
@@ -27,7 +24,7 @@ struct SimulationOptions {
   SceneOptions scene;
   Layout layout = Layout::tracking;
   SensorConfig sensor = default_sensor();
-  LidarErrors errors;  ///< its elevation bias is set by the layout
+  LidarErrors errors;  ///< its elevation bias is set by the sensor
   DetectorErrors detector;
   std::size_t max_scans = 0;  ///< 0: the whole drive
   double map_voxel_m = 0.2;   ///< spacing of the true static map's points
