@@ -44,6 +44,7 @@ DEFAULT_VARIANTS = [
     "cropped, no vertical correction: --roi camera --set sensor.vertical_correction_deg=0",
     "constant motion only: --set odometry.enabled=false",
     "paper: --preset paper",
+    "paper, middle of the sweep: --preset paper --set motion.reference_fraction=0.5",
     "paper, cropped: --preset paper --roi camera",
 ]
 

@@ -107,7 +107,7 @@ std::vector<Detection> detect(const std::vector<ObjectTruth>& objects, const Det
 }
 
 std::string detection_csv_header() {
-  return "frame,class,x,y,z,l,w,h,yaw,score\n";
+  return "frame,class,x_m,y_m,z_m,length_m,width_m,height_m,yaw_rad,score\n";
 }
 
 std::string detection_csv_lines(std::size_t frame, const std::vector<Detection>& detections) {
