@@ -17,7 +17,7 @@ help:
 	@echo "  make build             build the program: $(BUILD)/bin/mlo"
 	@echo "  make demo DATA=FOLDER  run it on a folder of scans (KITTI layouts, .bin, .pcd, .ply); results in $(OUT)"
 	@echo "  make test              build and run all tests"
-	@echo "  make bench             build and run the benchmarks"
+	@echo "  make bench             build and run the benchmarks; DATA=FOLDER (docs/results.md) adds KITTI's sequences"
 	@echo "  make format            format the C++ sources"
 	@echo "  make lint              check format and code; BASE=main only what differs from main"
 	@echo "  make clean             remove what was built"
@@ -44,6 +44,10 @@ bench:
 	@cmake --preset release -DMLO_BUILD_BENCHMARKS=ON
 	@cmake --build $(BUILD) --target benchmarks -j $(JOBS)
 	@for program in $(BUILD)/bin/bench_*; do $$program || exit 1; done
+	@if [ -n "$(DATA)" ]; then \
+	  cmake --build $(BUILD) --target mlo -j $(JOBS) && \
+	  scripts/evaluate_sequences.py --data "$(DATA)" --program $(BUILD)/bin/mlo --out out/bench --variant default:; \
+	fi
 
 format:
 	$(call install,develop)

@@ -6,7 +6,6 @@ add_library(mlo_mlo INTERFACE)
 add_library(mlo::mlo ALIAS mlo_mlo)
 set_target_properties(mlo_mlo PROPERTIES EXPORT_NAME mlo)
 target_link_libraries(mlo_mlo INTERFACE ${libraries})
-add_custom_target(libraries DEPENDS ${libraries})
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/mlo)
 install(TARGETS ${libraries} mlo_mlo EXPORT mloTargets

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian (or Ubuntu) packages that are missing, and says which.
 #
-#   scripts/install_dependencies.sh [build] [bench] [develop]
+#   scripts/install_dependencies.sh [build] [bench] [develop] [plot]
 #
 # build (the default) is what the program and its tests need; bench adds the benchmark library; develop adds the
-# formatter, the linter and the compiler cache.
+# formatter, the linter and the compiler cache; plot what scripts/*.py draw and compute with.
 set -euo pipefail
 
 build=(g++ cmake ninja-build make git xz-utils
@@ -12,6 +12,7 @@ build=(g++ cmake ninja-build make git xz-utils
   robin-map-dev libnanoflann-dev libgtest-dev libgmock-dev)
 bench=(libbenchmark-dev)
 develop=(ccache clang-format clang-tidy-16)
+plot=(python3 python3-numpy python3-matplotlib)
 
 wanted=()
 for group in "${@:-build}"; do
@@ -19,7 +20,8 @@ for group in "${@:-build}"; do
     build) wanted+=("${build[@]}") ;;
     bench) wanted+=("${bench[@]}") ;;
     develop) wanted+=("${develop[@]}") ;;
-    *) echo "install_dependencies.sh: unknown group '$group'; there are build, bench and develop" >&2; exit 2 ;;
+    plot) wanted+=("${plot[@]}") ;;
+    *) echo "install_dependencies.sh: unknown group '$group'; there are build, bench, develop and plot" >&2; exit 2 ;;
   esac
 done
 

@@ -7,7 +7,9 @@ namespace mlo::apps {
 // Each adds one subcommand, with its options, help and examples, to the program; its callback does the work
 // and throws CLI::RuntimeError(exit code) or mlo::InputError to end with an error. Results go to stdout,
 // everything else through spdlog to stderr.
+void add_run(CLI::App& program);
 void add_eval(CLI::App& program);
 void add_config(CLI::App& program);
+void add_info(CLI::App& program);
 
 }  // namespace mlo::apps

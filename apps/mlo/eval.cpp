@@ -3,11 +3,21 @@
 #include "apps/mlo/commands.hpp"
 
 namespace mlo::apps {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  mlo eval trajectory --truth truth_lidar/01.txt --estimate out/trajectory.txt
+  mlo eval tracking --truth training/label_02 --estimate out/tracks
+)";
+
+}  // namespace
 
 void add_eval(CLI::App& program) {
   CLI::App* eval = program.add_subcommand("eval", "Measure results against the truth");
   eval->require_subcommand(1);
+  eval->footer(kExamples);
   add_eval_trajectory(*eval);
+  add_eval_tracking(*eval);
 }
 
 }  // namespace mlo::apps

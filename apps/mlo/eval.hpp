@@ -6,5 +6,6 @@ namespace mlo::apps {
 
 // Each adds one kind of evaluation to `mlo eval`, as the functions of commands.hpp do to the program.
 void add_eval_trajectory(CLI::App& eval);
+void add_eval_tracking(CLI::App& eval);
 
 }  // namespace mlo::apps

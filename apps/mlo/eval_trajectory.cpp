@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,9 @@
 #include "mlo/core/error.hpp"
 #include "mlo/evaluation/plot.hpp"
 #include "mlo/evaluation/trajectory_error.hpp"
+#include "mlo/io/atomic_file.hpp"
+#include "mlo/io/calibration.hpp"
+#include "mlo/io/pose_files.hpp"
 #include "mlo/io/trajectory_file.hpp"
 
 namespace mlo::apps {
@@ -24,12 +26,15 @@ the KITTI metric [%] and [deg/m] is the mean error over sub-paths of the lengths
 
 Examples:
   mlo eval trajectory --truth truth_lidar/01.txt --estimate out/trajectory.txt
+  mlo eval trajectory --truth poses/01.txt --calib sequences/01/calib.txt --estimate out/trajectory.txt
+  mlo eval trajectory --truth 2011_09_26/2011_09_26_drive_0005_sync/oxts --calib 2011_09_26 --estimate out/trajectory.txt
   mlo eval trajectory --truth truth.tum --estimate a.tum b.tum --match time --plot errors.svg
   mlo eval trajectory --truth poses/00.txt --estimate out/trajectory_camera.txt --plane xz --json > errors.json
 )";
 
 struct Options {
   std::filesystem::path truth;
+  std::filesystem::path calibration;
   std::vector<std::filesystem::path> estimates;
   std::string match = "auto";
   double max_time_difference_s = 0.02;
@@ -47,6 +52,24 @@ struct Evaluation {
 
 TrajectoryView view(const PoseList& poses) {
   return {poses.frames, poses.stamps_s, poses.T_world_body};
+}
+
+// Poses of the lidar where a calibration is given; else of the body that the file is about.
+PoseList read_truth(const Options& options) {
+  const bool is_oxts = std::filesystem::is_directory(options.truth);
+  PoseList poses = is_oxts ? read_oxts_folder(options.truth) : read_trajectory(options.truth);
+  if (options.calibration.empty()) return poses;
+  const Calibration calibration = std::filesystem::is_directory(options.calibration)
+                                      ? read_raw_calibration(options.calibration)
+                                      : read_calibration_file(options.calibration);
+  const std::optional<SE3>& T_body_lidar = is_oxts ? calibration.T_imu_lidar : calibration.T_camera0_lidar;
+  if (!T_body_lidar) {
+    throw InputError(
+        fmt::format("{}: does not hold the lidar's place relative to the {}; give the calibration that "
+                    "belongs to the truth",
+                    options.calibration.string(), is_oxts ? "IMU" : "camera"));
+  }
+  return rebased(std::move(poses), *T_body_lidar);
 }
 
 MatchBy choose_matching(const std::string& match, const PoseList& truth, const PoseList& estimate) {
@@ -199,20 +222,13 @@ std::vector<PlotPanel> plot_panels(const std::vector<Evaluation>& evaluations, c
   return panels;
 }
 
-void write_plot(const std::vector<Evaluation>& evaluations, const Options& options) {
-  std::ofstream file(options.plot, std::ios::binary);
-  file << svg_plot(plot_panels(evaluations, options.plane)) << std::flush;
-  if (!file)
-    throw InputError(
-        fmt::format("{}: cannot be written; check folder, rights and space", options.plot.string()));
-}
-
 void run(const Options& options) {
-  const PoseList truth = read_trajectory(options.truth);
+  const PoseList truth = read_truth(options);
   std::vector<Evaluation> evaluations;
   for (const std::filesystem::path& path : options.estimates)
     evaluations.push_back(evaluate(truth, path, options));
-  if (!options.plot.empty()) write_plot(evaluations, options);
+  if (!options.plot.empty())
+    write_file_atomically(options.plot, svg_plot(plot_panels(evaluations, options.plane)));
   if (!options.json) return print_table(truth, evaluations, options);
   nlohmann::ordered_json json = {{"truth", options.truth.string()},
                                  {"estimates", nlohmann::ordered_json::array()}};
@@ -226,8 +242,14 @@ void add_eval_trajectory(CLI::App& eval) {
   CLI::App* command =
       eval.add_subcommand("trajectory", "Errors of trajectories (ATE, RTE, RRE, KITTI metric)");
   const auto options = std::make_shared<Options>();
-  command->add_option("--truth", options->truth, "true poses: KITTI rows (12 values) or TUM (8 values)")
+  command
+      ->add_option("--truth", options->truth,
+                   "true poses: KITTI rows (12 numbers), TUM rows (8), or a KITTI raw oxts folder")
       ->required();
+  command->add_option(
+      "--calib", options->calibration,
+      "brings the truth to the lidar: calib.txt of KITTI odometry or tracking for camera poses, the "
+      "folder of the date for oxts");
   command->add_option("--estimate", options->estimates, "one or more files of poses of the same body")
       ->required();
   command

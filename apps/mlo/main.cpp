@@ -77,8 +77,10 @@ int run(int argc, char** argv) {
   program.fallthrough();  // global options may follow the subcommand
   program.footer(kFooter);
   add_global_options(program);
+  mlo::apps::add_run(program);
   mlo::apps::add_eval(program);
   mlo::apps::add_config(program);
+  mlo::apps::add_info(program);
 
   try {
     program.parse(argc, argv);

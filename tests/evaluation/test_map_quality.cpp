@@ -38,11 +38,11 @@ Points random_cube(std::size_t count, double half_m) {
 
 TEST(MapQuality, ThicknessOfAWallIsItsNoise) {
   for (const double sigma_m : {0.005, 0.02, 0.05}) {
-    const MapQuality quality = map_quality(wall(30000, sigma_m, 3.0, 1));
-    EXPECT_EQ(quality.num_points, 30000U);
+    const MapQuality quality = map_quality(wall(10000, sigma_m, 3.0, 1));
+    EXPECT_EQ(quality.num_points, 10000U);
     EXPECT_GT(quality.num_planar, quality.num_samples / 2);
-    EXPECT_NEAR(quality.plane_residual_mean_m.value(), sigma_m, 0.03 * sigma_m);
-    EXPECT_NEAR(quality.plane_residual_median_m.value(), sigma_m, 0.03 * sigma_m);
+    EXPECT_NEAR(quality.plane_residual_mean_m.value(), sigma_m, 0.05 * sigma_m);
+    EXPECT_NEAR(quality.plane_residual_median_m.value(), sigma_m, 0.05 * sigma_m);
   }
 }
 
@@ -57,14 +57,17 @@ TEST(MapQuality, AWallSeenTwiceFromWrongPosesIsWorse) {
   EXPECT_GT(bad.mean_entropy.value(), good.mean_entropy.value() + 0.5);
 }
 
-TEST(MapQuality, EntropyOfAFilledBallIsTheFormula) {
-  // The neighbourhood of points well inside a filled cube is a ball of variance r^2 / 5 in every direction.
-  MapQualityOptions options{.radius_m = 0.4};
-  const Points points = random_cube(200000, 2.0);
-  const double inside = 0.5 * 3.0 * std::log(2.0 * std::numbers::pi * std::numbers::e * 0.4 * 0.4 / 5.0);
-  const MapQuality quality = map_quality(points, options);
-  EXPECT_NEAR(quality.mean_entropy.value(), inside, 0.15);  // balls cut by the cube's faces have less
-  EXPECT_LT(quality.mean_entropy.value(), inside);
+TEST(MapQuality, EntropyOfAGaussianIsTheFormula) {
+  // All of a small Gaussian cluster is in everyone's neighbourhood.
+  std::mt19937 rng(6);
+  std::normal_distribution<double> normal(0.0, 0.05);
+  Points points;
+  for (int i = 0; i < 3000; ++i)
+    points.push_back(Eigen::Vector3d(normal(rng), normal(rng), normal(rng)).cast<float>());
+  const MapQuality quality = map_quality(points, {.radius_m = 2.0});
+  const double expected = 1.5 * std::log(2.0 * std::numbers::pi * std::numbers::e * (0.05 * 0.05 + 1e-6));
+  EXPECT_NEAR(quality.mean_entropy.value(), expected, 0.06);
+  EXPECT_EQ(quality.num_samples, 3000U);
   EXPECT_EQ(quality.num_planar, 0U);
 }
 

@@ -77,7 +77,7 @@ TEST(ReadCalibrationFile, TellsFileLineAndRemedy) {
   EXPECT_THAT([&] { open("P0: 1\nTr: 1 2 3\n"); },
               ThrowsMessage<InputError>(HasSubstr("calib.txt:2: 3 numbers for Tr, 12 are needed")));
   EXPECT_THAT([&] { open("Tr: 1 0 0 0 0 1 0 0 0 0 1 x\n"); },
-              ThrowsMessage<InputError>(HasSubstr("calib.txt:1: 'x' is not a number")));
+              ThrowsMessage<InputError>(HasSubstr("calib.txt:1: 'x' is not a finite number")));
   EXPECT_FALSE(open("").T_camera0_lidar.has_value());
   EXPECT_THROW(read_calibration_file(folder.path() / "none.txt"), InputError);
 }

@@ -66,7 +66,7 @@ TEST(OpenDataset, KittiRawFromEveryLevel) {
     const Dataset dataset = open_dataset(folder.path() / level, {});
     EXPECT_EQ(dataset.format, "kitti_raw") << level;
     EXPECT_EQ(dataset.sequence, "2011_09_26_drive_0005_sync");
-    EXPECT_EQ(dataset.sensor.vertical_correction_deg, 0.0);
+    EXPECT_EQ(dataset.sensor.vertical_correction_deg, 0.205);
     EXPECT_THAT(frames(*dataset.scans), ElementsAre(3U));
     const ScanReading reading = dataset.scans->read(0);
     ASSERT_TRUE(reading.scan.has_value()) << reading.problem;
@@ -109,7 +109,7 @@ TEST(OpenDataset, AsksWhichOfSeveralSequences) {
     folder.write(std::string("2011_09_26/") + drive + "/velodyne_points/data/0000000000.bin", small_scan());
   }
   const auto open = [&](const std::string& sequence) {
-    return open_dataset(folder.path(), {.format = "auto", .sequence = sequence}).sequence;
+    return open_dataset(folder.path(), {.sequence = sequence}).sequence;
   };
   EXPECT_EQ(open("0009"), "2011_09_26_drive_0009_sync");
   EXPECT_EQ(open("5"), "2011_09_26_drive_0005_sync");
@@ -124,7 +124,7 @@ TEST(OpenDataset, TellsWhatItLookedFor) {
               testing::ThrowsMessage<InputError>(HasSubstr("velodyne_points")));
   EXPECT_THAT([&] { open_dataset(folder.path() / "none", {}); },
               testing::ThrowsMessage<InputError>(HasSubstr("is not a folder")));
-  EXPECT_THAT([&] { open_dataset(folder.path(), {.format = "kiti", .sequence = ""}); },
+  EXPECT_THAT([&] { open_dataset(folder.path(), {.format = "kiti"}); },
               testing::ThrowsMessage<InputError>(HasSubstr("kitti_odometry")));
 }
 
@@ -170,15 +170,15 @@ TEST(OpenDataset, StampsThatAreMissingOrUnsorted) {
 TEST(RealDatasets, OpenWithTheirStampsAndGaps) {
   const auto data = test::real_data();
   if (!data) GTEST_SKIP() << test::kNoRealData;
-  const Dataset odometry = open_dataset(*data / "kitti_odometry", {.format = "auto", .sequence = "01"});
+  const Dataset odometry = open_dataset(*data / "kitti_odometry", {.sequence = "01"});
   EXPECT_EQ(odometry.scans->size(), 77U);
   EXPECT_THAT(odometry.warnings, IsEmpty());
   EXPECT_NEAR(odometry.scans->read(1).scan->stamp_s, 0.1037595, 1e-6);
-  const Dataset raw = open_dataset(*data / "kitti_raw", {.format = "auto", .sequence = "9"});
+  const Dataset raw = open_dataset(*data / "kitti_raw", {.sequence = "9"});
   EXPECT_EQ(raw.scans->size(), 51U);
   EXPECT_THAT(raw.warnings, IsEmpty());
   EXPECT_NEAR(raw.scans->read(50).scan->duration_s, 0.1033, 0.001);
-  const Dataset tracking = open_dataset(*data / "kitti_tracking", {.format = "auto", .sequence = "0000"});
+  const Dataset tracking = open_dataset(*data / "kitti_tracking", {.sequence = "0000"});
   EXPECT_EQ(tracking.scans->size(), 154U);
   EXPECT_THAT(tracking.warnings, IsEmpty());
   ASSERT_TRUE(tracking.truth.has_value());

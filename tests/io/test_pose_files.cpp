@@ -145,7 +145,7 @@ TEST(RealTruth, OfOdometryEqualsTheLidarPoses) {
   const auto data = test::real_data();
   if (!data) GTEST_SKIP() << test::kNoRealData;
   for (const std::string sequence : {"01", "04"}) {
-    const Dataset dataset = open_dataset(*data / "kitti_odometry", {.format = "auto", .sequence = sequence});
+    const Dataset dataset = open_dataset(*data / "kitti_odometry", {.sequence = sequence});
     ASSERT_TRUE(dataset.truth.has_value());
     ASSERT_EQ(dataset.truth->frames.size(), dataset.scans->size());
     const PoseList reference = read_kitti_poses(*data / "truth_lidar" / (sequence + ".txt"));
@@ -160,7 +160,7 @@ TEST(RealTruth, OfRawAgreesWithIntegratedVelocity) {
   const auto data = test::real_data();
   if (!data) GTEST_SKIP() << test::kNoRealData;
   for (const std::string drive : {"0005", "0009"}) {
-    const Dataset dataset = open_dataset(*data / "kitti_raw", {.format = "auto", .sequence = drive});
+    const Dataset dataset = open_dataset(*data / "kitti_raw", {.sequence = drive});
     ASSERT_TRUE(dataset.truth.has_value());
     ASSERT_EQ(dataset.truth->frames.size(), dataset.scans->size());
     const PoseList reference = read_kitti_poses(*data / "truth_lidar" / (drive + "_vel.txt"));

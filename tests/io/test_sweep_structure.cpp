@@ -115,6 +115,14 @@ TEST(RecoverRings, NumbersWhatIsLeftWhenRingsAreAbsent) {
   EXPECT_EQ(recovery.rings, 13U);
 }
 
+TEST(RecoverRings, RejectsTheWrongSensor) {
+  std::vector<Point> points = make_sweep({.sensor = hdl64e()});
+  const RingRecovery recovery = recover_rings(points, even_sensor(32));
+  EXPECT_FALSE(recovery.recovered);
+  EXPECT_EQ(recovery.problem, "64 scan lines, but the sensor has 32");
+  EXPECT_EQ(points.front().ring, Point::kNoRing);
+}
+
 TEST(RecoverRings, RejectsOtherOrders) {
   const std::vector<Point> sweep = make_sweep({.sensor = even_sensor(16)});
   std::vector<Point> shuffled = sweep;
@@ -132,6 +140,40 @@ TEST(RecoverRings, RejectsOtherOrders) {
     EXPECT_FALSE(recovery.problem.empty());
     for (const Point& point : points) ASSERT_EQ(point.ring, Point::kNoRing);
   }
+}
+
+TEST(OrderRings, CountsFromTheHighest) {
+  const SensorConfig sensor = even_sensor(16);
+  const std::vector<Point> truth = make_sweep({.sensor = sensor, .columns = 40});
+  const auto renumbered = [&](auto number_of) {
+    std::vector<Point> points = truth;
+    for (Point& point : points) point.ring = static_cast<std::uint16_t>(number_of(point.ring));
+    EXPECT_TRUE(order_rings(points, sensor));
+    return points;
+  };
+  const auto equal_truth = [&](const std::vector<Point>& points) {
+    return std::equal(points.begin(), points.end(), truth.begin(),
+                      [](const Point& a, const Point& b) { return a.ring == b.ring; });
+  };
+  EXPECT_TRUE(equal_truth(renumbered([](int ring) { return ring; })));
+  EXPECT_TRUE(equal_truth(renumbered([](int ring) { return 15 - ring; })));
+  EXPECT_TRUE(equal_truth(renumbered([](int ring) { return ring % 2 == 0 ? ring / 2 : 8 + ring / 2; })));
+}
+
+TEST(OrderRings, AbsentRingsKeepTheirNumbers) {
+  std::vector<Point> points = make_sweep({.sensor = even_sensor(16), .columns = 40, .absent_rings = {0, 7}});
+  for (Point& point : points) point.ring = static_cast<std::uint16_t>(15 - point.ring);
+  ASSERT_TRUE(order_rings(points, even_sensor(16)));
+  EXPECT_EQ(points.front().ring, 1);
+  EXPECT_EQ(points.back().ring, 15);
+}
+
+TEST(OrderRings, OneNumberForAllIsNone) {
+  std::vector<Point> points = make_sweep({.sensor = even_sensor(16), .columns = 40});
+  for (Point& point : points) point.ring = 0;
+  EXPECT_FALSE(order_rings(points, even_sensor(16)));
+  EXPECT_EQ(points.front().ring, Point::kNoRing);
+  EXPECT_FALSE(order_rings({}, even_sensor(16)));
 }
 
 TEST(RecoverSweepFractions, KnownAnswers) {

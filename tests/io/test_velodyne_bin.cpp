@@ -21,7 +21,7 @@ Point point_at(float x, float y, float z, float intensity) {
 TEST(ReadVelodyneBin, RoundTrip) {
   const test::TempFolder folder;
   const std::vector<Point> points{point_at(1.0F, -2.0F, 3.5F, 0.25F), point_at(-70.125F, 0.0F, 1e-3F, 0.99F)};
-  const BinPoints read = read_velodyne_bin(folder.write("scan.bin", test::to_bin(points)));
+  const PointCloudFile read = read_velodyne_bin(folder.write("scan.bin", test::to_bin(points)));
   ASSERT_EQ(read.points.size(), 2U);
   EXPECT_EQ(read.invalid_points, 0U);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -38,7 +38,7 @@ TEST(ReadVelodyneBin, LeavesOutWhatIsNotFinite) {
   const auto file = folder.write(
       "scan.bin", test::to_bin({point_at(kNan, 0.0F, 0.0F, 0.0F), point_at(1.0F, 2.0F, 3.0F, 0.5F),
                                 point_at(0.0F, 0.0F, -kInf, 0.0F)}));
-  const BinPoints read = read_velodyne_bin(file);
+  const PointCloudFile read = read_velodyne_bin(file);
   ASSERT_EQ(read.points.size(), 1U);
   EXPECT_EQ(read.points.front().p_lidar, Eigen::Vector3f(1.0F, 2.0F, 3.0F));
   EXPECT_EQ(read.invalid_points, 2U);

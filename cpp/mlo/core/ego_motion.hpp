@@ -26,7 +26,8 @@ constexpr std::string_view to_string(EstimateStatus status) {
 struct PoseEstimate {
   SE3 T_target_source;
   EstimateStatus status = EstimateStatus::not_run;
-  /// Of the left perturbation [translation; rotation] ([m], [rad]), target frame.
+  /// Of a perturbation [translation; rotation] ([m], [rad]) at the source frame's own origin, with the axes of
+  /// the target frame.
   NormalEquations::Matrix6d covariance = NormalEquations::Matrix6d::Zero();
   int degenerate_directions = 0;
   std::size_t num_matches = 0;

@@ -19,7 +19,8 @@ namespace mlo {
 //
 // Nested structs: visit.group("ground", ground, "what it configures"). Enumerations:
 // visit("estimator", estimator, Choices<Estimator>{{"two_step", Estimator::two_step}, ...}, "...").
-// The visitors are in pipeline/config.hpp; stages need no more than this header.
+// Rules between values: an optional member `std::vector<std::string> find_problems() const`, one sentence
+// each. The visitor is in pipeline/config_fields.hpp; stages need no more than this header.
 
 /// Allowed values of a number, ends included.
 template <class T>

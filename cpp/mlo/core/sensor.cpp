@@ -30,6 +30,8 @@ SensorConfig hdl64e() {
   sensor.start_azimuth_deg = 180.0;
   sensor.min_range_m = 2.7;
   sensor.max_range_m = 120.0;
+  // Bias of the vertical angles in all of KITTI's scans (Deschaud, IMLS-SLAM, ICRA 2018).
+  sensor.vertical_correction_deg = 0.205;
   return sensor;
 }
 

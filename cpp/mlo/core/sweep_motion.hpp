@@ -6,17 +6,30 @@
 
 namespace mlo {
 
+/// How the points of a scan relate to its reference time.
+struct SweepTiming {
+  bool motion_compensated = false;  ///< points are already where they would be at the reference time
+  double reference_fraction = 0.5;  ///< sweep fraction of the reference time; 1 is the paper's end of sweep
+  double sweeps_since_previous = 1.0;  ///< between the reference times; more than 1 after missing scans
+};
+
 /// Motion of the lidar during a sweep, constant in the body frame.
 ///
 /// The paper refers points to the end of their sweep (reference_fraction 1); the middle (0.5) keeps errors of
 /// the assumed velocity smaller and unbiased. For motion-compensated scans use SweepMotion::none().
 class SweepMotion {
  public:
-  /// @param T_previous_current  increment over one sweep, as between the reference times of consecutive scans
+  /// @param motion_per_sweep    of the lidar from the start of a sweep to its end
   /// @param reference_fraction  sweep fraction to which points are brought
-  SweepMotion(const SE3& T_previous_current, double reference_fraction)
-      : xi_(T_previous_current.log()), reference_fraction_(reference_fraction) {}
+  SweepMotion(const SE3& motion_per_sweep, double reference_fraction)
+      : xi_(motion_per_sweep.log()), reference_fraction_(reference_fraction) {}
   static SweepMotion none() { return {SE3(), 0.5}; }
+
+  /// The motion within a sweep that an increment between the reference times of two scans implies.
+  static SweepMotion from_increment(const SE3& T_previous_current, const SweepTiming& timing) {
+    if (timing.motion_compensated) return none();
+    return {interpolate(T_previous_current, 1.0 / timing.sweeps_since_previous), timing.reference_fraction};
+  }
 
   /// Pose of the lidar at a sweep fraction, in the lidar frame at the reference time; Eq. (5) as in NOTES.
   SE3 T_reference_at(double sweep_fraction) const {

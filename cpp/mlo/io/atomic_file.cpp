@@ -53,7 +53,8 @@ int write_some(int descriptor, std::string_view bytes) {
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
-  if (std::filesystem::is_directory(path_)) fail(path_, EISDIR);
+  std::error_code ignored;  // whatever it is, opening meets it again
+  if (std::filesystem::is_directory(path_, ignored)) fail(path_, EISDIR);
   for (int i = 0; i < kMaxNames; ++i) {
     temporary_ = path_;
     temporary_ += fmt::format(".part{}", i);

@@ -11,7 +11,9 @@
 #include "mlo/io/kitti_odometry.hpp"
 #include "mlo/io/kitti_raw.hpp"
 #include "mlo/io/kitti_tracking.hpp"
+#include "mlo/io/plain_folder.hpp"
 #include "mlo/io/sequence_files.hpp"
+#include "mlo/io/text.hpp"
 
 namespace mlo {
 namespace {
@@ -22,7 +24,7 @@ struct Layout {
   std::string_view name;
   std::string_view looks_like;
   std::vector<SequenceFolder> (*find)(const fs::path&);
-  Dataset (*open)(const SequenceFolder&);
+  Dataset (*open)(const SequenceFolder&, const OpenOptions&);
 };
 
 // In the order in which they are tried.
@@ -31,6 +33,7 @@ constexpr std::array kLayouts{
     Layout{"kitti_raw", "DATE/DATE_drive_NNNN_sync/velodyne_points/data/*.bin", find_kitti_raw,
            open_kitti_raw},
     Layout{"kitti_tracking", "training/velodyne/NNNN/*.bin", find_kitti_tracking, open_kitti_tracking},
+    Layout{"folder", "*.bin, *.pcd or *.ply", find_plain_folder, open_plain_folder},
 };
 
 // Absolute, and without a slash at the end, so that it has a name.
@@ -60,7 +63,7 @@ std::string names_of(const std::vector<SequenceFolder>& sequences) {
 const SequenceFolder& select(const std::vector<SequenceFolder>& sequences, const std::string& wanted,
                              const fs::path& folder) {
   std::vector<const SequenceFolder*> matches;
-  const std::optional<std::size_t> number = parse_index(wanted);
+  const std::optional<std::size_t> number = parse_count(wanted);
   for (const SequenceFolder& sequence : sequences) {
     if (wanted == sequence.name) return sequence;
     if (wanted.empty() || (number && number == sequence.number)) matches.push_back(&sequence);
@@ -70,6 +73,10 @@ const SequenceFolder& select(const std::vector<SequenceFolder>& sequences, const
     throw InputError(fmt::format("{}: holds several sequences{}; name one (--sequence): {}", folder.string(),
                                  wanted.empty() ? "" : fmt::format(" with number {}", wanted),
                                  names_of(sequences)));
+  }
+  if (sequences.front().name.empty()) {
+    throw InputError(fmt::format("{}: a plain folder of scans has no sequence '{}'; leave out --sequence",
+                                 folder.string(), wanted));
   }
   throw InputError(
       fmt::format("{}: no sequence '{}'; there is {}", folder.string(), wanted, names_of(sequences)));
@@ -86,7 +93,7 @@ Dataset open_dataset(const fs::path& folder, const OpenOptions& options) {
   const std::vector<Layout> layouts = layouts_to_try(options.format);
   for (const Layout& layout : layouts) {
     const std::vector<SequenceFolder> sequences = layout.find(root);
-    if (!sequences.empty()) return layout.open(select(sequences, options.sequence, folder));
+    if (!sequences.empty()) return layout.open(select(sequences, options.sequence, folder), options);
   }
   std::vector<std::string> looked_for;
   for (const Layout& layout : layouts) {

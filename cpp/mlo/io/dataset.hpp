@@ -16,7 +16,8 @@ namespace mlo {
 struct ScanReading {
   std::optional<Scan> scan;
   std::string problem;             ///< file, what is wrong and the remedy; empty when there is a scan
-  std::size_t invalid_points = 0;  ///< points with NaN or infinite coordinates that were left out
+  bool missing = false;            ///< there is no file at all
+  std::size_t invalid_points = 0;  ///< left out: coordinates NaN, infinite, or all zero (no return)
 };
 
 /// A sequence of scans on disk. Small, immutable, read by index from any thread.
@@ -48,9 +49,10 @@ struct Calibration {
 /// What was found in a folder.
 struct Dataset {
   std::string format;    ///< kitti_odometry, kitti_raw, kitti_tracking or folder
-  std::string sequence;  ///< empty where the folder holds only one
+  std::string sequence;  ///< its name; empty for a plain folder
   std::filesystem::path root;
   std::unique_ptr<ScanSource> scans;
+  std::vector<double> stamps_s;  ///< of each scan, as far as known without reading it
   Calibration calibration;
   /// Lidar poses at the scans' stamps in the lidar frame at the first of them, where the data has them.
   std::optional<PoseList> truth;
@@ -61,7 +63,9 @@ struct Dataset {
 
 struct OpenOptions {
   std::string format = "auto";
-  std::string sequence;  ///< required where the folder holds several
+  std::string sequence = {};  ///< required where the folder holds several
+  /// Instead of the one that this kind of data is known to come from.
+  std::optional<SensorConfig> sensor = {};
 };
 
 /// Opens a folder of scans; the layout is recognised from what lies in it.

@@ -4,6 +4,7 @@
 
 #include "mlo/io/calibration.hpp"
 #include "mlo/io/pose_files.hpp"
+#include "mlo/io/text.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -11,14 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bias of the vertical angles of the benchmark's scans (Deschaud, IMLS-SLAM, ICRA 2018).
-constexpr double kVerticalCorrectionDeg = 0.205;
-
 // The object benchmark also has velodyne/NNNNNN.bin, but neither of the two files nor a number for a name.
 bool is_sequence(const fs::path& folder) {
   return holds_files(folder / "velodyne", ".bin") &&
          (fs::exists(folder / "times.txt") || fs::exists(folder / "calib.txt") ||
-          parse_index(folder.filename().string()));
+          parse_count(folder.filename().string()));
 }
 
 // Camera poses: dataset/poses/NN.txt beside dataset/sequences, or in the sequence's own folder.
@@ -31,25 +29,24 @@ fs::path poses_file(const SequenceFolder& sequence) {
 }  // namespace
 
 std::vector<SequenceFolder> find_kitti_odometry(const fs::path& folder) {
-  std::vector<fs::path> candidates{folder};
+  std::vector<fs::path> candidates{folder.filename() == "velodyne" ? folder.parent_path() : folder};
   for (const fs::path& parent : {folder, folder / "sequences", folder / "dataset" / "sequences"}) {
     for (const fs::path& child : subfolders(parent)) candidates.push_back(child);
   }
   std::vector<SequenceFolder> sequences;
   for (const fs::path& candidate : candidates) {
     const std::string name = candidate.filename().string();
-    if (is_sequence(candidate)) sequences.push_back({name, parse_index(name), candidate});
+    if (is_sequence(candidate)) sequences.push_back({name, parse_count(name), candidate});
   }
   return sequences;
 }
 
-Dataset open_kitti_odometry(const SequenceFolder& sequence) {
+Dataset open_kitti_odometry(const SequenceFolder& sequence, const OpenOptions& options) {
   Dataset dataset;
   dataset.format = "kitti_odometry";
   dataset.sequence = sequence.name;
   dataset.root = sequence.path;
-  dataset.sensor = hdl64e();
-  dataset.sensor.vertical_correction_deg = kVerticalCorrectionDeg;
+  dataset.sensor = options.sensor.value_or(hdl64e());
 
   const fs::path times = sequence.path / "times.txt";
   std::vector<double> stamps_s;
@@ -57,7 +54,7 @@ Dataset open_kitti_odometry(const SequenceFolder& sequence) {
   const double period_s = median_period_s(stamps_s, 1.0 / dataset.sensor.rate_hz);
   std::vector<ScanFile> scans = list_numbered_scans(sequence.path / "velodyne", ".bin");
   for (ScanFile& scan : scans) scan.duration_s = period_s;
-  dataset.warnings = set_stamps(scans, stamps_s, period_s, times.string());
+  dataset.warnings = set_stamps(scans, stamps_by_frame(scans, stamps_s), period_s, times.string());
   if (const fs::path file = sequence.path / "calib.txt"; fs::exists(file)) {
     dataset.calibration = read_calibration_file(file);
   }
@@ -65,9 +62,8 @@ Dataset open_kitti_odometry(const SequenceFolder& sequence) {
     dataset.truth = lidar_truth(scans, read_kitti_poses(file), dataset.calibration.T_camera0_lidar,
                                 file.string(), dataset.warnings);
   }
-  dataset.scans = std::make_unique<ScanFiles>(
-      std::move(scans),
-      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = true});
+  set_scans(dataset, std::move(scans),
+            {.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = true});
   return dataset;
 }
 

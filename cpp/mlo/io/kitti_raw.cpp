@@ -5,6 +5,7 @@
 
 #include "mlo/io/calibration.hpp"
 #include "mlo/io/pose_files.hpp"
+#include "mlo/io/text.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -22,7 +23,7 @@ std::optional<std::size_t> drive_number(const std::string& name) {
   const std::size_t at = name.find(marker);
   if (at == std::string::npos) return std::nullopt;
   const std::size_t begin = at + marker.size();
-  return parse_index(name.substr(begin, name.find('_', begin) - begin));
+  return parse_count(name.substr(begin, name.find('_', begin) - begin));
 }
 
 std::vector<double> read_stamps_if_there(const fs::path& file) {
@@ -44,6 +45,8 @@ void set_durations(std::vector<ScanFile>& scans, const fs::path& folder, double 
 
 std::vector<SequenceFolder> find_kitti_raw(const fs::path& folder) {
   std::vector<fs::path> candidates{folder};
+  if (folder.filename() == "velodyne_points") candidates.push_back(folder.parent_path());
+  if (folder.filename() == "data") candidates.push_back(folder.parent_path().parent_path());
   for (const fs::path& child : subfolders(folder)) {
     candidates.push_back(child);
     for (const fs::path& grandchild : subfolders(child)) candidates.push_back(grandchild);
@@ -56,27 +59,27 @@ std::vector<SequenceFolder> find_kitti_raw(const fs::path& folder) {
   return drives;
 }
 
-Dataset open_kitti_raw(const SequenceFolder& drive) {
+Dataset open_kitti_raw(const SequenceFolder& drive, const OpenOptions& options) {
   Dataset dataset;
   dataset.format = "kitti_raw";
   dataset.sequence = drive.name;
   dataset.root = drive.path;
-  dataset.sensor = hdl64e();
+  dataset.sensor = options.sensor.value_or(hdl64e());
 
   const fs::path folder = drive.path / "velodyne_points";
   const std::vector<double> stamps_s = read_stamps_if_there(folder / "timestamps.txt");
   const double period_s = median_period_s(stamps_s, 1.0 / dataset.sensor.rate_hz);
   std::vector<ScanFile> scans = list_numbered_scans(folder / "data", ".bin");
-  dataset.warnings = set_stamps(scans, stamps_s, period_s, (folder / "timestamps.txt").string());
+  dataset.warnings =
+      set_stamps(scans, stamps_by_frame(scans, stamps_s), period_s, (folder / "timestamps.txt").string());
   set_durations(scans, folder, period_s);
   dataset.calibration = read_raw_calibration(drive.path.parent_path());
   if (const fs::path oxts = drive.path / "oxts"; fs::exists(oxts / "data")) {
     dataset.truth = lidar_truth(scans, read_oxts_folder(oxts), dataset.calibration.T_imu_lidar, oxts.string(),
                                 dataset.warnings);
   }
-  dataset.scans = std::make_unique<ScanFiles>(
-      std::move(scans),
-      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
+  set_scans(dataset, std::move(scans),
+            {.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
   return dataset;
 }
 

@@ -4,6 +4,7 @@
 
 #include "mlo/io/calibration.hpp"
 #include "mlo/io/pose_files.hpp"
+#include "mlo/io/text.hpp"
 
 namespace mlo {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_sequence(const fs::path& folder) {
-  return folder.parent_path().filename() == "velodyne" && parse_index(folder.filename().string()) &&
+  return folder.parent_path().filename() == "velodyne" && parse_count(folder.filename().string()) &&
          holds_files(folder, ".bin");
 }
 
@@ -37,17 +38,17 @@ std::vector<SequenceFolder> find_kitti_tracking(const fs::path& folder) {
   std::vector<SequenceFolder> sequences;
   for (const fs::path& candidate : candidates) {
     const std::string name = candidate.filename().string();
-    if (is_sequence(candidate)) sequences.push_back({name, parse_index(name), candidate});
+    if (is_sequence(candidate)) sequences.push_back({name, parse_count(name), candidate});
   }
   return sequences;
 }
 
-Dataset open_kitti_tracking(const SequenceFolder& sequence) {
+Dataset open_kitti_tracking(const SequenceFolder& sequence, const OpenOptions& options) {
   Dataset dataset;
   dataset.format = "kitti_tracking";
   dataset.sequence = sequence.name;
   dataset.root = sequence.path;
-  dataset.sensor = hdl64e();
+  dataset.sensor = options.sensor.value_or(hdl64e());
 
   const fs::path part = sequence.path.parent_path().parent_path();
   const std::string file_name = sequence.name + ".txt";
@@ -61,9 +62,8 @@ Dataset open_kitti_tracking(const SequenceFolder& sequence) {
   }
   dataset.truth = find_truth(part, file_name, scans, dataset);
   if (const fs::path file = part / "label_02" / file_name; fs::exists(file)) dataset.labels = file;
-  dataset.scans = std::make_unique<ScanFiles>(
-      std::move(scans),
-      ScanFileTraits{.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
+  set_scans(dataset, std::move(scans),
+            {.sensor = dataset.sensor, .stamp_fraction = 0.5, .motion_compensated = false});
   return dataset;
 }
 

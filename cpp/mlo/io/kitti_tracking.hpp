@@ -16,6 +16,6 @@ std::vector<SequenceFolder> find_kitti_tracking(const std::filesystem::path& fol
 /// 10 Hz. Truth comes from oxts/NNNN.txt, or from poses_imu/NNNN.txt (rows of IMU poses) where only that is
 /// there.
 /// @throws InputError if a file that is there cannot be understood
-Dataset open_kitti_tracking(const SequenceFolder& sequence);
+Dataset open_kitti_tracking(const SequenceFolder& sequence, const OpenOptions& options);
 
 }  // namespace mlo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +17,6 @@ struct SequenceFolder {
   std::filesystem::path path;
 };
 
-/// The number a text of digits stands for ("0005" is 5); nothing if it is empty or holds anything else.
-std::optional<std::size_t> parse_index(const std::string& digits);
-
 /// Folders within a folder, links followed, in the order of their names; empty if it is no folder.
 std::vector<std::filesystem::path> subfolders(const std::filesystem::path& folder);
 
@@ -29,9 +27,16 @@ bool holds_files(const std::filesystem::path& folder, const std::string& extensi
 /// between are listed too (they will be reported when read). Other files are passed over. Stamps are not set.
 std::vector<ScanFile> list_numbered_scans(const std::filesystem::path& folder, const std::string& extension);
 
-/// Sets the stamps of scans by frame: row i of stamps_s belongs to frame i. Frames without a finite stamp are
-/// placed by the period after the last that has one (or before the first).
-/// @param origin  what the stamps came from, for the warnings
+/// Stands for a stamp that is not known.
+inline constexpr double kNoStamp = std::numeric_limits<double>::quiet_NaN();
+
+/// A stamp for each scan out of a list that begins with frame 0; kNoStamp where the list has none.
+std::vector<double> stamps_by_frame(const std::vector<ScanFile>& scans, const std::vector<double>& list_s);
+
+/// Sets the stamps of scans. Those without one are placed by the period after the last that has one (or
+/// before the first; frame 0 at 0 s if none has).
+/// @param stamps_s  one for each scan, kNoStamp where unknown
+/// @param origin    what the stamps came from, for the warnings
 /// @return what looks wrong: scans without stamps, stamps that do not grow
 std::vector<std::string> set_stamps(std::vector<ScanFile>& scans, const std::vector<double>& stamps_s,
                                     double period_s, const std::string& origin);
@@ -39,5 +44,8 @@ std::vector<std::string> set_stamps(std::vector<ScanFile>& scans, const std::vec
 /// Median difference [s] of successive stamps, those that do not grow left out; the fallback where there is
 /// none.
 double median_period_s(const std::vector<double>& stamps_s, double fallback_s);
+
+/// Gives the dataset its scans and their stamps, and warns of files that are missing in between.
+void set_scans(Dataset& dataset, std::vector<ScanFile> scans, ScanFileTraits traits);
 
 }  // namespace mlo

@@ -277,6 +277,30 @@ RingRecovery no_rings(std::span<Point> points, std::string problem) {
   return result;
 }
 
+// A ring that came with the points.
+struct RingSlope {
+  std::uint16_t ring = 0;
+  double mean_slope = 0.0;
+};
+
+// The rings present, by number.
+std::vector<RingSlope> measure_rings(std::span<const Point> points) {
+  const Angles angles = measure_angles(points);
+  std::vector<double> sum(Point::kNoRing, 0.0);
+  std::vector<std::size_t> count(Point::kNoRing, 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint16_t ring = points[i].ring;
+    if (ring == Point::kNoRing) continue;
+    sum[ring] += angles.slope[i];
+    ++count[ring];
+  }
+  std::vector<RingSlope> rings;
+  for (std::uint16_t ring = 0; ring < Point::kNoRing; ++ring) {
+    if (count[ring] > 0) rings.push_back({ring, sum[ring] / static_cast<double>(count[ring])});
+  }
+  return rings;
+}
+
 // Numbers the lines from the highest and writes the rings.
 RingRecovery assign_rings(std::span<Point> points, std::vector<Line> lines, const SensorConfig& sensor) {
   if (lines.back().mean_slope > lines.front().mean_slope) std::reverse(lines.begin(), lines.end());
@@ -314,6 +338,7 @@ RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor) 
   constexpr std::size_t kFewestPoints = 16;
   constexpr std::size_t kMostLines = 1024;
   constexpr double kMostVarianceWithin = 0.25;
+  constexpr double kMostSplit = 1.25;
   if (points.size() < kFewestPoints) return no_rings(points, "too few points to see scan lines in");
   const Angles angles = measure_angles(points);
   const int direction = storage_direction(angles.azimuth);
@@ -326,17 +351,44 @@ RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor) 
     return no_rings(points,
                     fmt::format("{} wraps of the azimuth: not stored line by line", by_azimuth.size()));
   }
+  const auto sensor_rings = static_cast<std::size_t>(sensor.rings);
+  if (sensor_rings > 0 && static_cast<double>(by_azimuth.size()) > kMostSplit * sensor.rings) {
+    return no_rings(points,
+                    fmt::format("{} scan lines, but the sensor has {}", by_azimuth.size(), sensor_rings));
+  }
   std::vector<Line> lines = by_azimuth;
   refine_ends(lines, angles, cut);
   std::size_t corrected = moved_points(by_azimuth, lines);
   measure_slopes(lines, angles.slope);
-  join_split_lines(lines, static_cast<std::size_t>(sensor.rings));
+  join_split_lines(lines, sensor_rings);
   if (lines.size() < 2 || variance_within(lines, angles.slope) > kMostVarianceWithin) {
     return no_rings(points, "the vertical angle contradicts the lines that the azimuth shows");
   }
   RingRecovery result = assign_rings(points, std::move(lines), sensor);
   result.corrected_share = static_cast<double>(corrected) / static_cast<double>(points.size());
   return result;
+}
+
+bool order_rings(std::span<Point> points, const SensorConfig& sensor) {
+  std::vector<RingSlope> rings = measure_rings(points);
+  if (rings.size() < 2) {
+    for (Point& point : points) point.ring = Point::kNoRing;
+    return false;
+  }
+  const auto higher = [](const RingSlope& a, const RingSlope& b) { return a.mean_slope > b.mean_slope; };
+  if (std::is_sorted(rings.begin(), rings.end(), higher)) return true;
+  const int lowest = std::max(sensor.rings - 1, static_cast<int>(rings.back().ring));
+  const bool upside_down = std::is_sorted(rings.rbegin(), rings.rend(), higher);
+  std::stable_sort(rings.begin(), rings.end(), higher);
+  std::vector<std::uint16_t> renumbered(static_cast<std::size_t>(lowest) + 1, Point::kNoRing);
+  for (std::size_t place = 0; place < rings.size(); ++place) {
+    const std::uint16_t ring = rings[place].ring;
+    renumbered[ring] = static_cast<std::uint16_t>(upside_down ? lowest - ring : static_cast<int>(place));
+  }
+  for (Point& point : points) {
+    if (point.ring != Point::kNoRing) point.ring = renumbered[point.ring];
+  }
+  return true;
 }
 
 void recover_sweep_fractions(std::span<Point> points, const SensorConfig& sensor) {

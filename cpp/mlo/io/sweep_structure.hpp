@@ -31,6 +31,13 @@ float azimuth_turns(float x, float y);
 /// @param sensor  its number of rings and their elevations; with rings = 0 lines are numbered as found
 RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor);
 
+/// Makes rings that came with the points count from the highest line: they are kept, or turned round, if
+/// their mean elevations are sorted, and numbered by elevation if not (some drivers number lasers, not
+/// lines).
+/// @param sensor  its number of rings, to turn them round; with rings = 0 the highest number present
+/// @return false, with all rings at Point::kNoRing, if there are not two or more different ones
+bool order_rings(std::span<Point> points, const SensorConfig& sensor);
+
 /// Sets the sweep fraction of each point from its azimuth, by where the sweep begins and which way it turns.
 void recover_sweep_fractions(std::span<Point> points, const SensorConfig& sensor);
 

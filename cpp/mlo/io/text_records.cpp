@@ -2,23 +2,17 @@
 
 #include <charconv>
 #include <chrono>
-#include <fstream>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
+#include "mlo/io/text.hpp"
 
 namespace mlo {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r,";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
 
 // Takes a number from the front of the text; false if there is none.
 template <class Number>
@@ -35,8 +29,8 @@ bool take(std::string_view& text, char expected) {
   return true;
 }
 
-// "yyyy-mm-dd hh:mm:ss.fraction"; NaN if it is not that.
-double parse_date_s(std::string_view text) {
+// "yyyy-mm-dd hh:mm:ss.fraction".
+std::optional<double> parse_date_s(std::string_view text) {
   int year = 0;
   unsigned month = 0;
   unsigned day = 0;
@@ -44,12 +38,11 @@ double parse_date_s(std::string_view text) {
   int minute = 0;
   double second = 0.0;
   const bool well_formed = take(text, year) && take(text, '-') && take(text, month) && take(text, '-') &&
-                           take(text, day) && (take(text, ' ') || take(text, 'T')) && take(text, hour) &&
-                           take(text, ':') && take(text, minute) && take(text, ':') && take(text, second) &&
-                           text.empty();
+                           take(text, day) && take(text, ' ') && take(text, hour) && take(text, ':') &&
+                           take(text, minute) && take(text, ':') && take(text, second) && text.empty();
   const std::chrono::year_month_day date{std::chrono::year{year}, std::chrono::month{month},
                                          std::chrono::day{day}};
-  if (!well_formed || !date.ok()) return std::numeric_limits<double>::quiet_NaN();
+  if (!well_formed || !date.ok()) return std::nullopt;
   const auto days = std::chrono::sys_days{date}.time_since_epoch().count();
   return static_cast<double>(days) * 86400.0 + hour * 3600 + minute * 60 + second;
 }
@@ -57,50 +50,45 @@ double parse_date_s(std::string_view text) {
 }  // namespace
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(fmt::format("{}: cannot be opened; check that it exists", file.string()));
+  const std::string text = read_file(file);
   std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    lines.push_back(line);
+  std::size_t offset = 0;
+  while (const std::optional<TextLine> line = line_at(text, offset)) {
+    lines.emplace_back(line->text);
+    offset = line->next_offset;
   }
-  while (!lines.empty() && trimmed(lines.back()).empty()) lines.pop_back();
+  while (!lines.empty() && is_blank(lines.back())) lines.pop_back();
   return lines;
 }
 
 std::vector<double> parse_numbers(std::string_view line, std::string_view where) {
   std::vector<double> numbers;
-  for (std::string_view rest = trimmed(line); !rest.empty(); rest = trimmed(rest)) {
-    double value = 0.0;
-    const std::string_view before = rest;
-    const bool is_number = take(rest, value);
-    if (!is_number || (!rest.empty() && kBlanks.find(rest.front()) == std::string_view::npos)) {
-      throw InputError(
-          fmt::format("{}: '{}' is not a number", where, before.substr(0, before.find_first_of(kBlanks))));
+  for (const std::string_view word : split_words(line)) {
+    const std::optional<double> value = parse_number(word);
+    if (!value || !std::isfinite(*value)) {
+      throw InputError(fmt::format("{}: '{}' is not a finite number", where, word));
     }
-    numbers.push_back(value);
+    numbers.push_back(*value);
   }
   return numbers;
 }
 
 double parse_stamp_s(std::string_view text, std::string_view where) {
-  const std::string_view stamp = trimmed(text);
-  std::string_view rest = stamp;
-  double seconds = 0.0;
-  if (take(rest, seconds) && rest.empty()) return seconds;
-  const double date_s = parse_date_s(stamp);
-  if (date_s != date_s) {
-    throw InputError(
-        fmt::format("{}: '{}' is neither seconds nor a date like 2011-09-26 13:04:32.335", where, stamp));
-  }
-  return date_s;
+  const std::vector<std::string_view> words = split_words(text);
+  const std::optional<double> seconds = words.size() == 1 ? parse_number(words.front()) : std::nullopt;
+  if (seconds && std::isfinite(*seconds)) return *seconds;
+  const std::optional<double> date_s =
+      words.size() == 2 ? parse_date_s(fmt::format("{} {}", words[0], words[1])) : std::nullopt;
+  if (date_s) return *date_s;
+  throw InputError(
+      fmt::format("{}: '{}' is neither seconds nor a date like 2011-09-26 13:04:32.335", where, text));
 }
 
 std::vector<double> read_stamps_s(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   const std::vector<std::string> lines = read_lines(file);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool blank = trimmed(lines[i]).empty();
+    const bool blank = is_blank(lines[i]);
     stamps_s.push_back(blank ? std::numeric_limits<double>::quiet_NaN()
                              : parse_stamp_s(lines[i], fmt::format("{}:{}", file.string(), i + 1)));
   }

@@ -1,7 +1,6 @@
 #include "mlo/io/trajectory_file.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -9,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
+#include "mlo/io/atomic_file.hpp"
 #include "mlo/io/pose_files.hpp"
+#include "mlo/io/text.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -29,16 +30,9 @@ SE3 tum_pose(const std::vector<double>& row, const std::string& where) {
   return pose;
 }
 
-bool is_comment(const std::string& line) {
-  const std::size_t begin = line.find_first_not_of(" \t");
-  return begin == std::string::npos || line[begin] == '#';
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text << std::flush;
-  if (!file)
-    throw InputError(fmt::format("{}: cannot be written; check folder, rights and space", path.string()));
+bool is_blank_or_comment(const std::string& line) {
+  const std::vector<std::string_view> words = split_words(line);
+  return words.empty() || words.front().starts_with('#');
 }
 
 }  // namespace
@@ -47,7 +41,7 @@ PoseList read_trajectory(const std::filesystem::path& path) {
   const std::vector<std::string> lines = read_lines(path);
   PoseList poses;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (is_comment(lines[i])) continue;
+    if (is_blank_or_comment(lines[i])) continue;
     const std::string where = fmt::format("{}:{}", path.string(), i + 1);
     const std::vector<double> row = parse_numbers(lines[i], where);
     if (row.size() == kKittiNumbers && poses.frames.empty()) return read_kitti_poses(path);
@@ -62,13 +56,22 @@ PoseList read_trajectory(const std::filesystem::path& path) {
   return poses;
 }
 
+std::string kitti_row(const SE3& pose) {
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = pose.matrix().topRows<3>();
+  return fmt::format("{}", fmt::join(rows.data(), rows.data() + rows.size(), " "));
+}
+
+std::string tum_row(double stamp_s, const SE3& pose) {
+  const Eigen::Vector3d& t = pose.translation();
+  Eigen::Quaterniond q = pose.rotation();
+  if (q.w() < 0.0) q.coeffs() *= -1.0;
+  return fmt::format("{} {} {} {} {} {} {} {}", stamp_s, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+}
+
 void write_kitti_poses(const std::filesystem::path& path, const PoseList& poses) {
   std::string text;
-  for (const SE3& pose : poses.T_world_body) {
-    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = pose.matrix().topRows<3>();
-    fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(rows.data(), rows.data() + rows.size(), " "));
-  }
-  write_text(path, text);
+  for (const SE3& pose : poses.T_world_body) text += kitti_row(pose) + '\n';
+  write_file_atomically(path, text);
 }
 
 void write_tum_poses(const std::filesystem::path& path, const PoseList& poses) {
@@ -79,13 +82,9 @@ void write_tum_poses(const std::filesystem::path& path, const PoseList& poses) {
   }
   std::string text;
   for (std::size_t i = 0; i < poses.T_world_body.size(); ++i) {
-    const Eigen::Vector3d& t = poses.T_world_body[i].translation();
-    Eigen::Quaterniond q = poses.T_world_body[i].rotation();
-    if (q.w() < 0.0) q.coeffs() *= -1.0;
-    fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {}\n", poses.stamps_s[i], t.x(), t.y(),
-                   t.z(), q.x(), q.y(), q.z(), q.w());
+    text += tum_row(poses.stamps_s[i], poses.T_world_body[i]) + '\n';
   }
-  write_text(path, text);
+  write_file_atomically(path, text);
 }
 
 }  // namespace mlo

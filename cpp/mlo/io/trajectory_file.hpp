@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "mlo/io/dataset.hpp"
 
@@ -21,5 +22,9 @@ void write_kitti_poses(const std::filesystem::path& path, const PoseList& poses)
 /// Writes TUM rows, with the shortest digits that read back as the same doubles; qw is not negative.
 /// @throws InputError if there is not one stamp per pose, or the file cannot be written
 void write_tum_poses(const std::filesystem::path& path, const PoseList& poses);
+
+/// One row without line end: the 12 numbers of the upper 3x4 matrix, or stamp [s] tx ty tz [m] qx qy qz qw.
+std::string kitti_row(const SE3& pose);
+std::string tum_row(double stamp_s, const SE3& pose);
 
 }  // namespace mlo

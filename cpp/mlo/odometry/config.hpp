@@ -64,6 +64,7 @@ struct OdometryConfig {
   /// once.
   enum class Estimator { two_step, joint };
 
+  bool enabled = true;
   Estimator estimator = Estimator::two_step;
   bool consistency_check = true;
   ConsistencyConfig consistency;
@@ -86,6 +87,8 @@ struct OdometryConfig {
 
   template <class Visitor>
   void fields(Visitor& visit) {
+    visit("enabled", enabled, Anything{},
+          "off: the map refinement starts from constant motion alone; faster, less robust");
     visit(
         "estimator", estimator,
         Choices<Estimator>{{"two_step", Estimator::two_step}, {"joint", Estimator::joint}},

@@ -13,8 +13,9 @@ struct GroundConfig {
   int iterations = 3;
   double seed_height_m = 0.3;
   double max_distance_m = 0.2;
+  double max_roughness_m = 0.07;
   double max_slope_deg = 20.0;
-  double max_bend_deg = 8.0;
+  double max_bend_deg = 6.0;
   double max_step_m = 0.3;
 
   template <class Visitor>
@@ -33,10 +34,13 @@ struct GroundConfig {
     visit(
         "max_distance_m", max_distance_m, between(0.01, 1.0),
         "ground lies this near to its plane [m]; more takes in kerbs and verges, less spares feet of walls");
+    visit("max_roughness_m", max_roughness_m, between(0.005, 1.0),
+          "most that ground points deviate from their plane, RMS [m]; more takes grass and climbs on hedges");
     visit("max_slope_deg", max_slope_deg, between(1.0, 60.0),
           "steepest ground, against the ground around the sensor [deg]; steeper planes are walls and bushes");
-    visit("max_bend_deg", max_bend_deg, between(0.5, 45.0),
-          "most that the ground turns from one zone to the next [deg]");
+    visit(
+        "max_bend_deg", max_bend_deg, between(0.5, 45.0),
+        "most that the ground turns from one zone to the next, and rises or falls where it is hidden [deg]");
     visit("max_step_m", max_step_m, between(0.01, 2.0),
           "most that the ground rises or falls at once from one zone to the next [m]");
   }
@@ -46,12 +50,13 @@ struct GroundConfig {
 struct FeatureConfig {
   int segments_per_line = 6;
   int ground_per_segment = 4;
-  int edges_per_segment = 2;
+  int edges_per_segment = 4;
   int edge_candidates_per_segment = 20;
-  int surfaces_per_segment = 4;
+  int surfaces_per_segment = 5;
   double min_edge_smoothness = 0.01;
   double max_surface_smoothness = 0.005;
   double candidate_voxel_m = 0.2;
+  double no_line_voxel_m = 2.0;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -71,6 +76,10 @@ struct FeatureConfig {
           "a surface feature is at most this rough (c of LOAM); lower keeps smooth walls only");
     visit("candidate_voxel_m", candidate_voxel_m, between(0.01, 5.0),
           "one ground and one surface candidate per voxel of this side [m]; smaller is finer and slower");
+    visit(
+        "no_line_voxel_m", no_line_voxel_m, between(0.1, 20.0),
+        "scans without rings: one ground and one surface feature per voxel of this side [m]; smaller matches "
+        "more and costs time");
   }
 };
 

@@ -68,10 +68,10 @@ struct Inputs {
   const FeatureConfig& config;
 
   /// Reliable places of one kind in the runs whose smoothness lies within the limits.
-  std::vector<std::uint32_t> places(std::span<const Run> runs, PointKind kind, double min_smoothness,
+  std::vector<std::uint32_t> places(std::span<const PointRun> runs, PointKind kind, double min_smoothness,
                                     double max_smoothness) const {
     std::vector<std::uint32_t> found;
-    for (const Run& run : runs) {
+    for (const PointRun& run : runs) {
       for (std::uint32_t place = run.head; place <= run.tail; ++place) {
         const std::uint32_t i = lines.order[place];
         const double c = shape.smoothness[i];
@@ -87,7 +87,7 @@ struct Inputs {
 constexpr double kAny = std::numeric_limits<double>::infinity();
 
 /// `from`: the runs of one segment of V_b.
-void choose_background(const Inputs& in, std::span<const Run> from, LineChooser& chooser,
+void choose_background(const Inputs& in, std::span<const PointRun> from, LineChooser& chooser,
                        ChosenPoints& chosen) {
   const FeatureConfig& config = in.config;
   const std::size_t before = chosen.edge_candidates.size();
@@ -110,7 +110,7 @@ ChosenPoints choose_on_line(const Inputs& in, std::size_t line) {
   for (std::size_t segment = line * per_line; segment < (line + 1) * per_line; ++segment) {
     ground.choose(in.places(in.segments.ground.segment(segment), PointKind::ground, 0.0, kAny),
                   Wanted::flattest, static_cast<std::size_t>(in.config.ground_per_segment), chosen.ground);
-    const std::span<const Run> from = in.segments.background.segment(segment);
+    const std::span<const PointRun> from = in.segments.background.segment(segment);
     choose_background(in, from, background, chosen);
     objects.choose(in.places(from, PointKind::object, in.config.min_edge_smoothness, kAny), Wanted::sharpest,
                    static_cast<std::size_t>(in.config.edge_candidates_per_segment), chosen.object_edges);
@@ -168,6 +168,15 @@ std::vector<FeaturePoint> gather_candidates(std::span<const Point> points, const
       downsample_first(std::span<const std::uint32_t>(indices), static_cast<float>(voxel_m),
                        [&](std::uint32_t i) -> const Eigen::Vector3f& { return points[i].p_lidar; });
   return gather_features(points, shape, kept);
+}
+
+std::vector<FeaturePoint> choose_without_lines(std::span<const FeaturePoint> candidates, double voxel_m) {
+  std::vector<FeaturePoint> without_line;
+  for (const FeaturePoint& candidate : candidates) {
+    if (candidate.ring == Point::kNoRing) without_line.push_back(candidate);
+  }
+  return downsample_first(std::span<const FeaturePoint>(without_line), static_cast<float>(voxel_m),
+                          [](const FeaturePoint& point) -> const Eigen::Vector3f& { return point.p_lidar; });
 }
 
 double mean_smoothness(std::span<const FeaturePoint> features) {

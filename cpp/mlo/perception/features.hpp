@@ -33,6 +33,10 @@ std::vector<FeaturePoint> gather_candidates(std::span<const Point> points, const
                                             std::span<const PointKind> kinds, PointKind kind,
                                             std::span<const std::uint32_t> excluded, double voxel_m);
 
+/// Features for points on no scan line, where no neighbours tell which are best: those among the candidates,
+/// the first of each (large) voxel.
+std::vector<FeaturePoint> choose_without_lines(std::span<const FeaturePoint> candidates, double voxel_m);
+
 /// S_a, Eq. (1): mean smoothness; 0 without features.
 double mean_smoothness(std::span<const FeaturePoint> features);
 

@@ -15,14 +15,16 @@ namespace mlo {
 namespace {
 
 /// Share of a zone's points that may lie below the ground (multipath): its lowest point representative (LPR)
-/// is the height that so many of them do not reach.
+/// is the height that so many of them do not reach. More where no plane before tells what is too low.
 constexpr double kShareBelow = 0.05;
 constexpr double kShareBelowNearby = 0.2;
+/// A plane is fitted to about so many points of a zone, evenly chosen; more cost time without changing it.
+constexpr std::size_t kFitPoints = 400;
 /// Zones that tell the ground around the sensor end here [m].
 constexpr float kNearby = 15.0F;
-/// Ground points must spread this much across their main direction to tilt a plane [m]; less is one scan
-/// line.
-constexpr float kMinSpread = 0.3F;
+/// The tilt of the plane before weighs as much as points that spread so far from each other [m]. It settles
+/// the tilt where points are few, close together or all on one scan line, and steadies it elsewhere.
+constexpr float kPriorSpread = 0.5F;
 
 float tan_deg(double degrees) {
   return static_cast<float>(std::tan(degrees * std::numbers::pi / 180.0));
@@ -32,9 +34,9 @@ float cos_deg(double degrees) {
   return static_cast<float>(std::cos(degrees * std::numbers::pi / 180.0));
 }
 
-/// Sums from which mean and covariance of points near `origin` follow.
+/// Sums from which mean and covariance of points follow.
 struct Moments {
-  Eigen::Vector3f origin;
+  Eigen::Vector3f origin;  ///< somewhere among the points, so that single precision suffices
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f sum_of_squares = Eigen::Matrix3f::Zero();
   std::size_t count = 0;
@@ -45,21 +47,29 @@ struct Moments {
     sum_of_squares += d * d.transpose();
     ++count;
   }
+  Eigen::Matrix3f covariance() const {
+    const auto n = static_cast<float>(count);
+    return sum_of_squares / n - (sum / n) * (sum / n).transpose();
+  }
 };
 
-/// Plane through the points by PCA. Points along one line leave its tilt open: then that of `prior` is kept.
-GroundPlane fit_plane(const Moments& moments, const GroundPlane& prior) {
-  const float n = static_cast<float>(moments.count);
-  const Eigen::Vector3f offset = moments.sum / n;
-  const Eigen::Matrix3f covariance = moments.sum_of_squares / n - offset * offset.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(covariance);
-  GroundPlane plane = prior;
-  if (eigen.eigenvalues()[1] > kMinSpread * kMinSpread) {
-    plane.normal = eigen.eigenvectors().col(0);
-    if (plane.normal.z() < 0.0F) plane.normal = -plane.normal;
-  }
-  plane.offset_m = -plane.normal.dot(moments.origin + offset);
+/// Plane through the points by PCA, its tilt drawn towards that of the plane before.
+GroundPlane fit_plane(const Moments& moments, const GroundPlane& before) {
+  const Eigen::Vector3f mean = moments.sum / static_cast<float>(moments.count);
+  const Eigen::Matrix3f along_before =
+      Eigen::Matrix3f::Identity() - before.normal * before.normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(moments.covariance() +
+                                                             kPriorSpread * kPriorSpread * along_before);
+  GroundPlane plane{.normal = eigen.eigenvectors().col(0)};
+  if (plane.normal.z() < 0.0F) plane.normal = -plane.normal;
+  plane.offset_m = -plane.normal.dot(moments.origin + mean);
   return plane;
+}
+
+/// Every few of the points, about `count` of them.
+void append_sample(std::span<const ZonePoint> zone, std::size_t count, std::vector<Eigen::Vector3f>& sample) {
+  const std::size_t step = std::max<std::size_t>(1, zone.size() / count);
+  for (std::size_t i = 0; i < zone.size(); i += step) sample.push_back(zone[i].p_lidar);
 }
 
 /// The value that the given share of the values does not reach; they must not be empty.
@@ -70,54 +80,70 @@ float quantile(std::vector<float>& values, double share) {
 }
 
 /// Height of the lowest points within +-gate of the plane; nothing if there are too few within.
-std::optional<float> lowest_height(std::span<const ZonePoint> zone, const GroundPlane& plane, float gate,
-                                   std::size_t min_points) {
+std::optional<float> lowest_height(std::span<const Eigen::Vector3f> zone, const GroundPlane& plane,
+                                   float gate, std::size_t min_points) {
   std::vector<float> heights;
   heights.reserve(zone.size());
-  for (const ZonePoint& point : zone) {
-    const float height = plane.height(point.p_lidar);
+  for (const Eigen::Vector3f& p : zone) {
+    const float height = plane.height(p);
     if (std::abs(height) < gate) heights.push_back(height);
   }
   if (heights.size() < min_points) return std::nullopt;
   return quantile(heights, kShareBelow);
 }
 
-/// Iterative PCA in one zone, begun with the points up to seed height above the lowest ones within +-gate of
-/// the prior; nothing if too few are left.
-std::optional<GroundPlane> fit_zone(std::span<const ZonePoint> zone, const GroundPlane& prior, float gate,
-                                    const GroundConfig& config) {
-  const auto min_points = static_cast<std::size_t>(config.min_zone_points);
-  const auto max_distance = static_cast<float>(config.max_distance_m);
-  const std::optional<float> lowest = lowest_height(zone, prior, gate, min_points);
-  if (!lowest) return std::nullopt;
-  GroundPlane plane = prior;
-  float from = *lowest - max_distance;
-  float to = *lowest + static_cast<float>(config.seed_height_m);
-  for (int i = 0; i <= config.iterations; ++i) {
-    Moments moments{.origin = zone.front().p_lidar};
-    for (const ZonePoint& point : zone) {
-      const float height = plane.height(point.p_lidar);
-      if (height > from && height < to) moments.add(point.p_lidar);
-    }
-    if (moments.count < min_points) return std::nullopt;
-    plane = fit_plane(moments, prior);
-    from = -max_distance;
-    to = max_distance;
+/// The points from `from` to `to` above the plane; empty if they are too few for a plane.
+std::optional<Moments> moments_between(std::span<const Eigen::Vector3f> zone, const GroundPlane& plane,
+                                       float from, float to, std::size_t min_points) {
+  if (zone.empty()) return std::nullopt;
+  Moments moments{.origin = zone.front()};
+  for (const Eigen::Vector3f& p : zone) {
+    const float height = plane.height(p);
+    if (height > from && height < to) moments.add(p);
   }
+  if (moments.count < min_points) return std::nullopt;
+  return moments;
+}
+
+/// Iterative PCA in one zone, begun with the points up to seed height above the lowest ones within +-gate of
+/// the plane before; nothing if too few are left or they give no plane.
+std::optional<GroundPlane> fit_zone(std::span<const Eigen::Vector3f> zone, const GroundPlane& before,
+                                    float gate, const GroundConfig& config) {
+  const auto min_points = static_cast<std::size_t>(config.min_zone_points);
+  const auto distance = static_cast<float>(config.max_distance_m);
+  const std::optional<float> lowest = lowest_height(zone, before, gate, min_points);
+  if (!lowest) return std::nullopt;
+  std::optional<Moments> inliers = moments_between(
+      zone, before, *lowest - distance, *lowest + static_cast<float>(config.seed_height_m), min_points);
+  for (int i = 0; i < config.iterations && inliers; ++i) {
+    inliers = moments_between(zone, fit_plane(*inliers, before), -distance, distance, min_points);
+  }
+  if (!inliers) return std::nullopt;
+  const GroundPlane plane = fit_plane(*inliers, before);
+  // A plane that cuts through the foot of a wall or hedge and what is before it has its points far off.
+  const float variance = plane.normal.dot(inliers->covariance() * plane.normal);
+  if (variance > config.max_roughness_m * config.max_roughness_m) return std::nullopt;
   return plane;
 }
 
-/// The gate around the expected ground that lets a zone bend and step by what is allowed.
-float gate_of(float depth, const GroundConfig& config) {
-  return static_cast<float>(config.max_step_m) + depth * tan_deg(config.max_bend_deg);
+/// How far the ground is known on the way outwards in a sector.
+struct KnownGround {
+  GroundPlane plane;
+  float reached_m = 0.0F;  ///< range up to which the plane was seen
+};
+
+/// Most that the ground may rise or fall up to the border of a zone, by a step or on the way unseen [m].
+float allowed_step(const KnownGround& known, float border_m, const GroundConfig& config) {
+  return static_cast<float>(config.max_step_m) +
+         std::max(0.0F, border_m - known.reached_m) * tan_deg(config.max_bend_deg);
 }
 
 /// May the ground go on from `before` to `plane`, seen at a point of `before` where the two zones meet?
 bool continues(const GroundPlane& plane, const GroundPlane& before, const GroundPlane& nearby,
-               const Eigen::Vector3f& border, const GroundConfig& config) {
+               const Eigen::Vector3f& border, float max_step_m, const GroundConfig& config) {
   return plane.normal.dot(before.normal) >= cos_deg(config.max_bend_deg) &&
          plane.normal.dot(nearby.normal) >= cos_deg(config.max_slope_deg) &&
-         std::abs(plane.height(border)) <= static_cast<float>(config.max_step_m);
+         std::abs(plane.height(border)) <= max_step_m;
 }
 
 /// The point of the plane above or below a place on the level.
@@ -126,58 +152,75 @@ Eigen::Vector3f onto_plane(const Eigen::Vector2f& place, const GroundPlane& plan
   return {place.x(), place.y(), z};
 }
 
-/// Height of the ground beneath the sensor: median over the zones around it of their low points, below the
-/// sensor. Zones with multipath or without sight of the ground do not matter while they are fewer than half.
-std::optional<float> nearby_height(const PolarZones& zones, const GroundConfig& config) {
-  std::vector<float> lowest;
-  std::vector<float> heights;
+/// A low point of each zone around the sensor: most of them lie on the ground, some on what hides it, some
+/// below (multipath).
+std::vector<Eigen::Vector3f> low_points(const PolarZones& zones) {
+  const auto is_lower = [](const ZonePoint& a, const ZonePoint& b) { return a.p_lidar.z() < b.p_lidar.z(); };
+  std::vector<Eigen::Vector3f> low;
+  std::vector<ZonePoint> zone;
   for (std::size_t sector = 0; sector < zones.num_sectors(); ++sector) {
-    for (std::size_t z = 0; z < zones.num_zones() && zones.far_edge_m(z) <= kNearby; ++z) {
-      heights.clear();
-      for (const ZonePoint& point : zones.points(sector, z)) heights.push_back(point.p_lidar.z());
-      if (heights.size() < static_cast<std::size_t>(config.min_zone_points)) continue;
-      const float low = quantile(heights, kShareBelowNearby);
-      if (low < 0.0F) lowest.push_back(low);
+    for (std::size_t z = 0; z < zones.num_zones() && zones.near_edge_m(z) < kNearby; ++z) {
+      const std::span<const ZonePoint> points = zones.points(sector, z);
+      if (points.empty()) continue;
+      zone.assign(points.begin(), points.end());
+      const auto at = zone.begin() +
+                      static_cast<std::ptrdiff_t>(kShareBelowNearby * static_cast<double>(zone.size() - 1));
+      std::nth_element(zone.begin(), at, zone.end(), is_lower);
+      low.push_back(at->p_lidar);
     }
   }
-  if (lowest.empty()) return std::nullopt;
-  return quantile(lowest, 0.5);
+  return low;
 }
 
-/// Plane of the ground around the sensor, fitted to the near zones of all sectors together.
+/// Plane of the ground around the sensor: least trimmed squares of the low points, by concentration steps
+/// (Rousseeuw and van Driessen, 2006) from the level plane at their median height. Nothing if no ground lies
+/// below the sensor.
 std::optional<GroundPlane> fit_nearby(const PolarZones& zones, const GroundConfig& config) {
-  const std::optional<float> height = nearby_height(zones, config);
-  if (!height) return std::nullopt;
-  const GroundPlane level{.offset_m = -*height};
-  std::vector<ZonePoint> near_points;
-  for (std::size_t sector = 0; sector < zones.num_sectors(); ++sector) {
-    for (std::size_t z = 0; z < zones.num_zones() && zones.far_edge_m(z) <= kNearby; ++z) {
-      const std::span<const ZonePoint> zone = zones.points(sector, z);
-      near_points.insert(near_points.end(), zone.begin(), zone.end());
-    }
+  constexpr double kShareOnGround = 0.6;
+  constexpr int kSteps = 10;
+  std::vector<Eigen::Vector3f> points = low_points(zones);
+  if (points.empty()) return std::nullopt;
+  std::vector<float> heights;
+  for (const Eigen::Vector3f& p : points) heights.push_back(p.z());
+  const GroundPlane level{.offset_m = -quantile(heights, 0.5)};
+  GroundPlane plane = level;
+  const auto on_ground =
+      static_cast<std::ptrdiff_t>(kShareOnGround * static_cast<double>(points.size() - 1)) + 1;
+  for (int i = 0; i < kSteps; ++i) {
+    std::nth_element(points.begin(), points.begin() + on_ground - 1, points.end(),
+                     [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+                       return std::abs(plane.height(a)) < std::abs(plane.height(b));
+                     });
+    Moments moments{.origin = points.front()};
+    std::for_each(points.begin(), points.begin() + on_ground,
+                  [&](const Eigen::Vector3f& p) { moments.add(p); });
+    plane = fit_plane(moments, level);
   }
-  if (near_points.empty()) return level;
-  const float gate = gate_of(kNearby, config);
-  const std::optional<GroundPlane> plane = fit_zone(near_points, level, gate, config);
-  if (plane && plane->normal.z() >= cos_deg(config.max_slope_deg)) return plane;
-  return level;
+  if (plane.normal.z() < cos_deg(config.max_slope_deg)) plane = level;
+  if (plane.offset_m <= 0.0F) return std::nullopt;
+  return plane;
 }
 
 /// Walks one sector from near to far and marks its ground points.
 void segment_sector(const PolarZones& zones, std::size_t sector, const GroundPlane& nearby,
                     const GroundConfig& config, std::vector<std::uint8_t>& is_ground) {
-  GroundPlane plane = nearby;
+  KnownGround known{.plane = nearby};
+  std::vector<Eigen::Vector3f> sample;
   for (std::size_t z = 0; z < zones.num_zones(); ++z) {
     const std::span<const ZonePoint> zone = zones.points(sector, z);
-    if (zone.empty()) continue;
-    const std::optional<GroundPlane> fitted =
-        fit_zone(zone, plane, gate_of(zones.depth_m(z), config), config);
-    const Eigen::Vector3f border = onto_plane(zones.near_border(sector, z), plane);
-    if (fitted && continues(*fitted, plane, nearby, border, config)) plane = *fitted;
+    sample.clear();
+    append_sample(zone, kFitPoints, sample);
+    const Eigen::Vector2f border = zones.near_border(sector, z);
+    const float max_step = allowed_step(known, border.norm(), config);
+    const float gate = max_step + zones.depth_m(z) * tan_deg(config.max_bend_deg);
+    const std::optional<GroundPlane> fitted = fit_zone(sample, known.plane, gate, config);
+    if (fitted &&
+        continues(*fitted, known.plane, nearby, onto_plane(border, known.plane), max_step, config)) {
+      known = {*fitted, zones.far_edge_m(z)};
+    }
     for (const ZonePoint& point : zone) {
-      const bool near_plane =
-          std::abs(plane.height(point.p_lidar)) < static_cast<float>(config.max_distance_m);
-      is_ground[point.index] = near_plane ? 1 : 0;
+      const float height = known.plane.height(point.p_lidar);
+      is_ground[point.index] = std::abs(height) < static_cast<float>(config.max_distance_m) ? 1 : 0;
     }
   }
 }

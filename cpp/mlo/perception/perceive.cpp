@@ -17,6 +17,18 @@ std::size_t count_of(std::span<const PointKind> kinds, PointKind kind) {
   return static_cast<std::size_t>(std::count(kinds.begin(), kinds.end(), kind));
 }
 
+/// A feature set whose candidates are the points of a kind, `taken` left out.
+FeatureSet gather_set(PointKind kind, std::span<const std::uint32_t> features,
+                      std::span<const std::uint32_t> taken, std::span<const Point> points,
+                      const LineShape& shape, std::span<const PointKind> kinds, const FeatureConfig& config) {
+  FeatureSet set;
+  set.features = gather_features(points, shape, features);
+  set.candidates = gather_candidates(points, shape, kinds, kind, taken, config.candidate_voxel_m);
+  const std::vector<FeaturePoint> more = choose_without_lines(set.candidates, config.no_line_voxel_m);
+  set.features.insert(set.features.end(), more.begin(), more.end());
+  return set;
+}
+
 std::vector<ObjectPoints> gather_objects(std::span<const Point> points, std::span<const Detection> detections,
                                          std::span<const PointKind> kinds,
                                          std::span<const std::uint16_t> object_ids, const LineShape& shape,
@@ -51,19 +63,17 @@ Percept perceive(const Scan& scan, std::span<const Detection> detections, const 
   const ChosenPoints chosen = choose_points(lines, shape, segments, kinds, config.features);
 
   Percept percept;
-  const double voxel_m = config.features.candidate_voxel_m;
   tbb::parallel_invoke(
       [&] {
-        percept.ground.candidates = gather_candidates(points, shape, kinds, PointKind::ground, {}, voxel_m);
+        percept.ground =
+            gather_set(PointKind::ground, chosen.ground, {}, points, shape, kinds, config.features);
       },
       [&] {
-        percept.surface.candidates =
-            gather_candidates(points, shape, kinds, PointKind::background, chosen.edge_candidates, voxel_m);
+        percept.surface = gather_set(PointKind::background, chosen.surfaces, chosen.edge_candidates, points,
+                                     shape, kinds, config.features);
       });
-  percept.ground.features = gather_features(points, shape, chosen.ground);
   percept.edge.features = gather_features(points, shape, chosen.edges);
   percept.edge.candidates = gather_features(points, shape, chosen.edge_candidates);
-  percept.surface.features = gather_features(points, shape, chosen.surfaces);
   percept.objects = gather_objects(points, detections, kinds, object_ids, shape, chosen.object_edges);
   percept.mean_ground_smoothness = mean_smoothness(percept.ground.features);
   percept.num_ground_points = count_of(kinds, PointKind::ground);

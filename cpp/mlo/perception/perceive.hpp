@@ -9,7 +9,8 @@
 namespace mlo {
 
 /// Multi-task fusion perception (paper, section III-B): ground, objects and the features of the environment.
-/// Coordinates must be finite. Points without a ring give candidates, but no features chosen on scan lines.
+/// Coordinates must be finite. Points without a ring give no edges, and features of
+/// ground and surfaces by place alone.
 /// @param detections  boxes in the lidar frame at the time of the scan; objects of the result keep their
 /// order
 Percept perceive(const Scan& scan, std::span<const Detection> detections, const PerceptionConfig& config);

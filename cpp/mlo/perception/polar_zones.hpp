@@ -32,6 +32,7 @@ class PolarZones {
     return std::span<const ZonePoint>(points_).subspan(cell_begin_[cell],
                                                        cell_begin_[cell + 1] - cell_begin_[cell]);
   }
+  float near_edge_m(std::size_t zone) const { return edges_m_[zone]; }
   float far_edge_m(std::size_t zone) const { return edges_m_[zone + 1]; }
   float depth_m(std::size_t zone) const { return edges_m_[zone + 1] - edges_m_[zone]; }
   /// Where a zone begins, in the middle of its sector, seen from above [m].

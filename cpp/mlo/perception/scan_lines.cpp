@@ -102,7 +102,7 @@ std::vector<std::uint8_t> reliable_of(const LineCoordinates& line) {
 
 /// Appends the runs of points whose mark is `kind` among the places [first, last).
 void append_runs(const ScanLines& lines, std::span<const std::uint8_t> is_ground, std::uint8_t kind,
-                 std::size_t first, std::size_t last, std::vector<Run>& runs) {
+                 std::size_t first, std::size_t last, std::vector<PointRun>& runs) {
   bool inside = false;
   for (std::size_t place = first; place < last; ++place) {
     const bool matches = is_ground[lines.order[place]] == kind;
@@ -115,7 +115,7 @@ void append_runs(const ScanLines& lines, std::span<const std::uint8_t> is_ground
 
 SegmentRuns list_runs(const ScanLines& lines, std::span<const std::uint8_t> is_ground, std::uint8_t kind,
                       std::size_t segments_per_line) {
-  std::vector<std::vector<Run>> by_segment(lines.num_lines() * segments_per_line);
+  std::vector<std::vector<PointRun>> by_segment(lines.num_lines() * segments_per_line);
   parallel_for_each_index(by_segment.size(), [&](std::size_t segment) {
     const std::size_t line = segment / segments_per_line;
     const std::size_t part = segment % segments_per_line;
@@ -125,7 +125,7 @@ SegmentRuns list_runs(const ScanLines& lines, std::span<const std::uint8_t> is_g
   });
   SegmentRuns all;
   all.begin.push_back(0);
-  for (const std::vector<Run>& runs : by_segment) {
+  for (const std::vector<PointRun>& runs : by_segment) {
     all.runs.insert(all.runs.end(), runs.begin(), runs.end());
     all.begin.push_back(all.runs.size());
   }

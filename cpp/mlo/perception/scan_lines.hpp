@@ -34,19 +34,19 @@ struct LineShape {
 LineShape measure_lines(std::span<const Point> points, const ScanLines& lines);
 
 /// Neighbouring places in ScanLines::order, head and tail included, all ground or all background.
-struct Run {
+struct PointRun {
   std::uint32_t head = 0;
   std::uint32_t tail = 0;
 };
 
 /// The runs of one kind, segment after segment: V_g or V_b of the paper.
 struct SegmentRuns {
-  std::vector<Run> runs;
+  std::vector<PointRun> runs;
   std::vector<std::size_t> begin;  ///< where each segment begins in `runs`, and where the last one ends
 
   std::size_t num_segments() const { return begin.empty() ? 0 : begin.size() - 1; }
-  std::span<const Run> segment(std::size_t i) const {
-    return std::span<const Run>(runs).subspan(begin[i], begin[i + 1] - begin[i]);
+  std::span<const PointRun> segment(std::size_t i) const {
+    return std::span<const PointRun>(runs).subspan(begin[i], begin[i + 1] - begin[i]);
   }
 };
 

@@ -6,16 +6,65 @@
 #include <vector>
 
 #include "mlo/core/sensor.hpp"
+#include "mlo/mapping/config.hpp"
+#include "mlo/odometry/config.hpp"
+#include "mlo/perception/config.hpp"
 
 namespace mlo {
+
+/// Which part of each scan is used.
+enum class RegionOfInterest { full, camera };
+
+struct InputConfig {
+  RegionOfInterest roi = RegionOfInterest::full;
+  double camera_half_angle_deg = 45.0;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("roi", roi,
+          Choices<RegionOfInterest>{{"full", RegionOfInterest::full}, {"camera", RegionOfInterest::camera}},
+          "full: the whole revolution; camera: only what lies ahead, as the paper does");
+    visit("camera_half_angle_deg", camera_half_angle_deg, between(1.0, 180.0),
+          "azimuths within this of straight ahead belong to the camera's view [deg]");
+  }
+};
+
+/// The motion during and between sweeps.
+struct MotionConfig {
+  double reference_fraction = 0.5;
+  double constant_motion_within_m = 0.1;
+  double constant_motion_within_deg = 0.5;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("reference_fraction", reference_fraction, between(0.0, 1.0),
+          "points are brought to this moment of their sweep: 1, its end, as in the paper; the middle halves the "
+          "error of a wrong velocity");
+    visit("constant_motion_within_m", constant_motion_within_m, between(0.0, 100.0),
+          "map refinement starts from constant motion while odometry differs from it by less than this, else "
+          "from odometry: smoother against quicker to follow; 0 always takes odometry [m]");
+    visit("constant_motion_within_deg", constant_motion_within_deg, between(0.0, 180.0),
+          "the same for the rotation [deg]");
+  }
+};
 
 /// Everything that can be configured, stage by stage.
 struct PipelineConfig {
   SensorConfig sensor;
+  InputConfig input;
+  MotionConfig motion;
+  PerceptionConfig perception;
+  OdometryConfig odometry;
+  MappingConfig mapping;
 
   template <class Visitor>
   void fields(Visitor& visit) {
     visit.group("sensor", sensor, "The lidar that took the scans.");
+    visit.group("input", input, "Which part of the scans is used.");
+    visit.group("motion", motion, "Motion during a sweep.");
+    visit.group("perception", perception, "Ground, features and objects of one scan (paper, section III-B).");
+    visit.group("odometry", odometry, "Scan-to-scan ego odometry (paper, section III-C-1).");
+    visit.group("mapping", mapping, "Map refinement and the static map (paper, section III-D).");
   }
 };
 

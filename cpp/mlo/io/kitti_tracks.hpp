@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mlo/core/object_record.hpp"
+
+namespace mlo {
+
+/// Reads a label (17 fields) or result file (18, with score) of the KITTI tracking benchmark:
+/// frame id type truncation occlusion alpha left top right bottom height width length x y z rotation_y
+/// [score], the box in rectified camera 0 with x, y, z at the middle of its bottom face.
+/// @throws InputError naming file and line
+std::vector<ObjectRecord> read_kitti_tracks(const std::filesystem::path& file);
+
+/// Reads all .txt files of a folder, by sequence (the file's name without .txt); or a single file.
+/// @throws InputError if there are none, or as read_kitti_tracks
+std::map<std::string, std::vector<ObjectRecord>> read_kitti_sequences(const std::filesystem::path& path);
+
+}  // namespace mlo

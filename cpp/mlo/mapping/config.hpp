@@ -1,0 +1,125 @@
+#pragma once
+
+#include "mlo/core/fields.hpp"
+
+namespace mlo {
+
+/// The map around the robot against which scans are registered.
+struct LocalMapConfig {
+  double voxel_m = 0.5;
+  int max_points_per_voxel = 20;
+  double min_spacing_m = 0.1;
+  double radius_m = 100.0;
+  bool separate_classes = false;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("voxel_m", voxel_m, between(0.05, 10.0),
+          "edge of a voxel: neighbours are found up to this far; larger is slower [m]");
+    visit("max_points_per_voxel", max_points_per_voxel, between(1, 20),
+          "bounds memory and search time; fewer points describe surfaces less well");
+    visit("min_spacing_m", min_spacing_m, between(0.0, 5.0),
+          "a point nearer than this to one of its voxel is not added: even density against detail [m]");
+    visit("radius_m", radius_m, between(10.0, 1000.0),
+          "what is farther from the robot is forgotten: memory against returning points of view [m]");
+    visit("separate_classes", separate_classes, Anything{},
+          "ground, edges and surfaces in maps of their own, as in the paper, or all in one");
+  }
+};
+
+/// What a neighbourhood of map points is taken for when a point is matched to it.
+enum class ShapeModel {
+  loam,         ///< planes for ground and surface points, lines for edge points; nothing else matches
+  distribution  ///< planes where it is flat, else its distribution
+};
+
+/// Scan-to-map registration, section III-D-2.
+struct RefinementConfig {
+  ShapeModel shape_model = ShapeModel::distribution;
+  bool correct_distortion = true;
+  double source_voxel_m = 0.5;
+  int neighbours = 8;
+  double max_thickness_m = 0.1;
+  double max_flatness = 0.1;
+  double noise_m = 0.07;
+  double gate_m = 0.8;
+  double gate_without_motion_m = 3.0;
+  double final_gate_m = 0.3;
+  double gate_shrink = 0.6;
+  double kernel_m = 0.2;
+  double rematch_distance_m = 0.03;
+  int coarse_stride = 4;
+  int max_iterations = 15;
+  int max_iterations_without_motion = 40;
+  double translation_tolerance_m = 2e-4;
+  double rotation_tolerance_rad = 2e-5;
+  int min_matches = 100;
+  double min_curvature = 1e-3;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("shape_model", shape_model,
+          Choices<ShapeModel>{{"loam", ShapeModel::loam}, {"distribution", ShapeModel::distribution}},
+          "loam: lines for edges, planes for the rest, as in the paper; distribution: planes where it is flat, "
+          "elsewhere whitened by the spread of the neighbours");
+    visit("correct_distortion", correct_distortion, Anything{},
+          "true: distortion follows the pose while it is refined; false: it is removed once, with odometry's "
+          "increment, as in the paper");
+    visit("source_voxel_m", source_voxel_m, between(0.05, 10.0),
+          "the scan is thinned to one point per voxel: accuracy against time [m]");
+    visit("neighbours", neighbours, between(5, 20), "map points that make a neighbourhood");
+    visit("max_thickness_m", max_thickness_m, between(0.001, 10.0),
+          "a neighbourhood thicker than this (standard deviation) is no plane [m]");
+    visit("max_flatness", max_flatness, between(0.0, 1.0),
+          "smallest over middle variance above which a neighbourhood is no plane");
+    visit("noise_m", noise_m, between(0.001, 1.0),
+          "standard deviation of a point: how much a wide neighbourhood counts less than a flat one [m]");
+    visit("gate_m", gate_m, between(0.01, 50.0), "distance to the nearest map point at the first match [m]");
+    visit("gate_without_motion_m", gate_without_motion_m, between(0.01, 50.0),
+          "the same while the speed is not known: the first scans, and after a failure [m]");
+    visit("final_gate_m", final_gate_m, between(0.01, 50.0), "the gate shrinks to this [m]");
+    visit("gate_shrink", gate_shrink, between(0.1, 1.0), "factor by which the gate shrinks per iteration");
+    visit("kernel_m", kernel_m, between(0.001, 10.0),
+          "scale of the Geman-McClure kernel: smaller trusts outliers less and converges slower [m]");
+    visit("rematch_distance_m", rematch_distance_m, between(0.0, 1.0),
+          "neighbours are searched again when a point has moved more than this [m]");
+    visit("coarse_stride", coarse_stride, between(1, 100),
+          "the first iterations use every n-th point only, until the motion is nearly found");
+    visit("max_iterations", max_iterations, between(1, 200), "Gauss-Newton iterations");
+    visit("max_iterations_without_motion", max_iterations_without_motion, between(1, 500),
+          "the same while the speed is not known");
+    visit("translation_tolerance_m", translation_tolerance_m, between(0.0, 1.0),
+          "a smaller step ends the iterations [m]");
+    visit("rotation_tolerance_rad", rotation_tolerance_rad, between(0.0, 1.0),
+          "a smaller step ends the iterations [rad]");
+    visit("min_matches", min_matches, between(6, 100000), "with fewer the estimate is not used");
+    visit("min_curvature", min_curvature, between(0.0, 1.0),
+          "directions that a mean match constrains less than this are degenerate and left to the prediction");
+  }
+};
+
+/// The long-term map that is saved.
+struct StaticMapConfig {
+  double voxel_m = 0.2;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("voxel_m", voxel_m, between(0.01, 10.0),
+          "one point per voxel is kept: detail against memory and file size [m]");
+  }
+};
+
+struct MappingConfig {
+  LocalMapConfig local_map;
+  RefinementConfig refinement;
+  StaticMapConfig static_map;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit.group("local_map", local_map, "The map around the robot that scans are registered to.");
+    visit.group("refinement", refinement, "Scan-to-map registration (paper, section III-D-2).");
+    visit.group("static_map", static_map, "The long-term map that is saved.");
+  }
+};
+
+}  // namespace mlo

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <string_view>
+
+#include "mlo/core/ego_motion.hpp"
+#include "mlo/core/se3.hpp"
+#include "mlo/odometry/consistency_check.hpp"
+
+namespace mlo {
+
+/// The steps of a scan, in order.
+enum class Stage { prepare, perception, odometry, refinement, map_update };
+inline constexpr std::size_t kNumStages = 5;
+inline constexpr std::array<std::string_view, kNumStages> kStageNames{"prepare", "perception", "odometry",
+                                                                      "refinement", "map_update"};
+
+/// Wall time per stage [ms].
+struct StageTimes {
+  std::array<double, kNumStages> ms{};
+
+  double& operator[](Stage stage) { return ms[static_cast<std::size_t>(stage)]; }
+  double total_ms() const {
+    double sum = 0.0;
+    for (const double value : ms) sum += value;
+    return sum;
+  }
+};
+
+/// Runs `work` and adds its wall time to a stage.
+template <class Work>
+auto timed(StageTimes& times, Stage stage, const Work& work) {
+  struct Stopwatch {
+    StageTimes& times;
+    Stage stage;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Stopwatch() {
+      const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+      times[stage] += elapsed.count();
+    }
+  };
+  const Stopwatch stopwatch{times, stage};
+  return work();
+}
+
+/// Numbers of what perception found.
+struct PerceptCounts {
+  std::size_t points = 0;  ///< after cropping
+  std::size_t ground_points = 0;
+  std::size_t ground_features = 0;
+  std::size_t edge_features = 0;
+  std::size_t surface_features = 0;
+  std::size_t candidates = 0;
+  std::size_t objects = 0;
+  std::size_t object_points = 0;
+  std::size_t ambiguous_points = 0;
+};
+
+/// Everything that one scan brought: what viewers, files and metrics need.
+struct FrameResult {
+  std::size_t frame = 0;
+  double stamp_s = 0.0;
+  SE3 T_odom_lidar;  ///< T_ol: accumulated scan-to-scan odometry, at the stamp
+  SE3 T_map_lidar;   ///< T_ml: after map refinement, at the stamp
+  bool first = false;       ///< the first scan defines both frames
+  PoseEstimate odometry;    ///< increment T_previous_current
+  PoseEstimate refinement;  ///< T_map_lidar at the reference time of the sweep
+  ConsistencyReport consistency;
+  PerceptCounts counts;
+  StageTimes times;
+
+  /// False: the pose is a prediction only.
+  bool localised() const { return first || refinement.usable(); }
+};
+
+/// Where the lidar should be by constant motion, for scans that are missing.
+struct PredictedPoses {
+  SE3 T_odom_lidar;
+  SE3 T_map_lidar;
+};
+
+}  // namespace mlo

@@ -1,0 +1,243 @@
+#include "mlo/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <tbb/parallel_invoke.h>
+
+#include "mlo/mapping/refinement.hpp"
+#include "mlo/odometry/two_step_ego.hpp"
+#include "mlo/perception/perceive.hpp"
+#include "mlo/pipeline/prepare.hpp"
+
+namespace mlo {
+namespace {
+
+// A gap longer than this many sweeps: the increment no longer describes the motion within one sweep.
+constexpr double kGapSweeps = 1.5;
+// Predictions over longer gaps than this many sweeps are no better than that.
+constexpr double kMaxPredictedSweeps = 10.0;
+// After so many scans in a row that are not found in the local maps, the maps are not of this place.
+constexpr int kMaxScansLost = 3;
+
+PerceptCounts count(const Scan& prepared, const Percept& seen) {
+  PerceptCounts counts;
+  counts.points = prepared.points.size();
+  counts.ground_points = seen.num_ground_points;
+  counts.ground_features = seen.ground.features.size();
+  counts.edge_features = seen.edge.features.size();
+  counts.surface_features = seen.surface.features.size();
+  counts.candidates =
+      seen.ground.candidates.size() + seen.edge.candidates.size() + seen.surface.candidates.size();
+  counts.objects = seen.objects.size();
+  for (const ObjectPoints& object : seen.objects) counts.object_points += object.points.size();
+  counts.ambiguous_points = seen.num_ambiguous_points;
+  return counts;
+}
+
+// Scan to scan, an increment is known less well than constant motion predicts it while nothing happens; it
+// starts the refinement where it contradicts the prediction.
+bool agrees(const SE3& T_odometry, const SE3& prediction, const MotionConfig& config) {
+  const SE3 difference = prediction.inverse() * T_odometry;
+  return difference.translation().norm() <= config.constant_motion_within_m &&
+         difference.rotation_angle_rad() <= config.constant_motion_within_deg * std::numbers::pi / 180.0;
+}
+
+// Points of features brought to the reference time and placed by a pose.
+void append_placed(std::span<const FeaturePoint> features, const SweepMotion& motion, const SE3& T_map_lidar,
+                   std::vector<Eigen::Vector3f>& points_map) {
+  for (const FeaturePoint& feature : features) {
+    const Eigen::Vector3d p_lidar =
+        motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
+    points_map.push_back((T_map_lidar * p_lidar).cast<float>());
+  }
+}
+
+std::vector<FeaturePoint> thin(std::span<const FeaturePoint> points, double voxel_m) {
+  return downsample_first<FeaturePoint>(points, static_cast<float>(voxel_m),
+                                        [](const FeaturePoint& point) { return point.p_lidar; });
+}
+
+// All environment candidates of a scan, edges first, so that they are not thinned away.
+std::vector<FeaturePoint> all_candidates(const Percept& seen) {
+  std::vector<FeaturePoint> all = seen.edge.candidates;
+  all.insert(all.end(), seen.ground.candidates.begin(), seen.ground.candidates.end());
+  all.insert(all.end(), seen.surface.candidates.begin(), seen.surface.candidates.end());
+  return all;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const PipelineConfig& config)
+    : config_(config),
+      local_maps_{LocalMap(config.mapping.local_map), LocalMap(config.mapping.local_map),
+                  LocalMap(config.mapping.local_map)},
+      static_map_(config.mapping.static_map) {}
+
+FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detections) {
+  FrameResult result;
+  result.frame = scan.frame;
+  result.stamp_s = scan.stamp_s;
+  StageTimes& times = result.times;
+
+  const Scan prepared =
+      timed(times, Stage::prepare, [&] { return prepare(scan, config_.sensor, config_.input); });
+  const Percept seen =
+      timed(times, Stage::perception, [&] { return perceive(prepared, detections, config_.perception); });
+  result.counts = count(prepared, seen);
+
+  const SweepTiming sweep = timing(prepared);
+  const SE3 prediction = predict(sweep);
+  const EgoOdometryResult ego = timed(
+      times, Stage::odometry, [&] { return estimate_increment(seen, prediction, sweep, prepared.frame); });
+  const SE3 T_odometry = ego.increment.usable() ? ego.increment.T_target_source : prediction;
+  const SE3 T_start = agrees(T_odometry, prediction, config_.motion) ? prediction : T_odometry;
+  result.first = state_.empty;
+  result.odometry = ego.increment;
+  result.consistency = ego.consistency;
+  const bool motion_known = state_.motion_known || ego.increment.usable();
+  result.refinement =
+      timed(times, Stage::refinement, [&] { return refine_pose(seen, T_start, motion_known, sweep); });
+
+  timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, sweep, result); });
+  return result;
+}
+
+SweepTiming Pipeline::timing(const Scan& scan) const {
+  SweepTiming timing{scan.motion_compensated, config_.motion.reference_fraction};
+  if (state_.empty || scan.duration_s <= 0.0) return timing;
+  const double sweeps = (scan.stamp_s - state_.stamp_s) / scan.duration_s;
+  if (sweeps >= kGapSweeps) timing.sweeps_since_previous = std::min(sweeps, kMaxPredictedSweeps);
+  return timing;
+}
+
+SE3 Pipeline::predict(const SweepTiming& timing) const {
+  return interpolate(state_.T_sweep, timing.sweeps_since_previous);
+}
+
+PredictedPoses Pipeline::predict_poses(double sweeps_ahead) const {
+  const SE3 motion = interpolate(state_.T_sweep, std::min(sweeps_ahead, kMaxPredictedSweeps));
+  return {state_.T_odom_lidar * motion, state_.T_map_lidar * motion};
+}
+
+EgoOdometryResult Pipeline::estimate_increment(const Percept& seen, const SE3& prediction,
+                                               const SweepTiming& timing, std::size_t frame) const {
+  if (state_.empty || !config_.odometry.enabled) return {};
+  const std::optional<SE3> guess = state_.motion_known ? std::optional(prediction) : std::nullopt;
+  return estimate_ego(seen, state_.reference, guess, timing, config_.odometry, frame);
+}
+
+PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
+                                   const SweepTiming& timing) {
+  PoseEstimate refined;
+  if (state_.empty) return refined;
+  const RefinementConfig& config = config_.mapping.refinement;
+  const bool separate = config_.mapping.local_map.separate_classes;
+  std::vector<FeaturePoint> ground;
+  std::vector<FeaturePoint> edges;
+  std::vector<FeaturePoint> rest;
+  if (separate) {
+    ground = thin(seen.ground.candidates, config.source_voxel_m);
+    edges = thin(seen.edge.candidates, config.source_voxel_m);
+    rest = thin(seen.surface.candidates, config.source_voxel_m);
+  } else {
+    rest = thin(all_candidates(seen), config.source_voxel_m);
+  }
+  const std::vector<RefinementTerm> terms{{ground, &local_maps_.ground, ExpectedShape::plane},
+                                          {edges, &local_maps_.edge, ExpectedShape::line},
+                                          {rest, &local_maps_.surface, ExpectedShape::plane}};
+  RefinementGuess guess{state_.T_map_lidar, T_previous_current, motion_known, timing};
+  refined = refine(terms, guess, config);
+
+  if (state_.unplaced && refined.usable()) {
+    // Only now is the motion known that distorted the first scan: put it into the map again, and repeat.
+    if (config.correct_distortion) {
+      guess.T_previous_current = state_.T_map_lidar.inverse() * refined.T_target_source;
+    }
+    guess.motion_known = true;
+    clear_maps();
+    const SweepMotion motion = SweepMotion::from_increment(guess.T_previous_current, timing);
+    insert_in_local_maps(*state_.unplaced, motion, state_.T_map_lidar);
+    static_map_.insert(*state_.unplaced, motion, state_.T_map_lidar);
+    refined = refine(terms, guess, config);
+  }
+  return refined;
+}
+
+void Pipeline::clear_local_maps() {
+  for (LocalMap* map : {&local_maps_.ground, &local_maps_.edge, &local_maps_.surface}) map->clear();
+}
+
+bool Pipeline::local_maps_are_empty() const {
+  return local_maps_.ground.empty() && local_maps_.edge.empty() && local_maps_.surface.empty();
+}
+
+void Pipeline::clear_maps() {
+  clear_local_maps();
+  static_map_ = StaticMap(config_.mapping.static_map);
+}
+
+void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar) {
+  const bool separate = config_.mapping.local_map.separate_classes;
+  LocalMaps& maps = local_maps_;
+  const auto insert = [&](const FeatureSet& set, LocalMap& own_map) {
+    std::vector<Eigen::Vector3f> points_map;
+    points_map.reserve(set.candidates.size());
+    append_placed(set.candidates, motion, T_map_lidar, points_map);
+    (separate ? own_map : maps.surface).insert(points_map);
+  };
+  insert(seen.edge, maps.edge);
+  insert(seen.ground, maps.ground);
+  insert(seen.surface, maps.surface);
+  for (LocalMap* map : {&maps.ground, &maps.edge, &maps.surface}) {
+    map->forget_beyond_radius(T_map_lidar.translation().cast<float>());
+  }
+}
+
+void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
+                      FrameResult& result) {
+  const SE3 T_map_lidar =
+      result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
+  const bool follow_map = config_.mapping.refinement.correct_distortion;
+  const SE3 increment = follow_map && !state_.empty ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
+  const SweepMotion motion = SweepMotion::from_increment(increment, timing);
+
+  State next;
+  next.empty = false;
+  next.motion_known = result.refinement.usable();
+  next.stamp_s = scan.stamp_s;
+  next.T_odom_lidar = state_.T_odom_lidar * T_odometry;
+  next.T_map_lidar = T_map_lidar;
+  next.T_sweep = interpolate(increment, 1.0 / timing.sweeps_since_previous);
+  if (result.first && !scan.motion_compensated) next.unplaced = seen;
+  const bool placeable =
+      result.counts.candidates >= static_cast<std::size_t>(config_.mapping.refinement.min_matches);
+  if (!result.localised()) next.scans_lost = state_.scans_lost + (placeable ? 1 : 0);
+  const bool new_local_maps =
+      placeable && !result.localised() && (local_maps_are_empty() || next.scans_lost >= kMaxScansLost);
+  if (new_local_maps) {
+    clear_local_maps();
+    next.scans_lost = 0;
+  }
+  tbb::parallel_invoke(
+      [&] {
+        if (!config_.odometry.enabled) return;
+        const auto max_candidates = static_cast<std::size_t>(config_.odometry.max_candidates);
+        next.reference = make_reference_scan(seen, motion, max_candidates);
+      },
+      [&] {
+        if (result.localised() || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
+      },
+      [&] {
+        if (result.localised()) static_map_.insert(seen, motion, T_map_lidar);
+      });
+
+  const SE3 T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);
+  result.T_odom_lidar = next.T_odom_lidar * T_reference_stamp;
+  result.T_map_lidar = next.T_map_lidar * T_reference_stamp;
+  state_ = std::move(next);
+}
+
+}  // namespace mlo

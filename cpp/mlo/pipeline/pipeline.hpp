@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "mlo/core/box.hpp"
+#include "mlo/core/features.hpp"
+#include "mlo/core/sweep_motion.hpp"
+#include "mlo/core/types.hpp"
+#include "mlo/mapping/local_map.hpp"
+#include "mlo/mapping/static_map.hpp"
+#include "mlo/odometry/reference_scan.hpp"
+#include "mlo/odometry/two_step_ego.hpp"
+#include "mlo/pipeline/config.hpp"
+#include "mlo/pipeline/frame_result.hpp"
+
+namespace mlo {
+
+/// The whole system, scan by scan (the paper's Fig. 2). Not thread-safe; runs on the caller's TBB arena.
+class Pipeline {
+ public:
+  explicit Pipeline(const PipelineConfig& config);
+
+  /// Takes the next scan and the boxes that a detector found in it. Scans come in the order of time; gaps are
+  /// allowed. After three scans in a row that are not found in the local maps, these begin anew at the
+  /// predicted pose.
+  FrameResult process(const Scan& scan, std::span<const Detection> detections);
+
+  /// Poses by constant motion, this many sweeps after the last scan that was processed.
+  PredictedPoses predict_poses(double sweeps_ahead) const;
+
+  const StaticMap& static_map() const { return static_map_; }
+
+ private:
+  /// What one scan leaves to the next; replaced as a whole at the end of process().
+  struct State {
+    bool empty = true;
+    bool motion_known = false;  ///< false until a first increment was estimated, and after a failure
+    double stamp_s = 0.0;
+    SE3 T_odom_lidar;         ///< at the reference time of the last scan
+    SE3 T_map_lidar;          ///< the same, refined
+    SE3 T_sweep;              ///< motion of the last sweep, from its start to its end
+    ReferenceScan reference;  ///< last scan's candidates without distortion
+    int scans_lost = 0;       ///< in a row, up to this one; scans too empty to be placed do not count
+    std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
+  };
+
+  /// One map, or one per class (LocalMapConfig::separate_classes).
+  struct LocalMaps {
+    LocalMap ground, edge, surface;
+  };
+
+  SweepTiming timing(const Scan& scan) const;
+  SE3 predict(const SweepTiming& timing) const;
+  EgoOdometryResult estimate_increment(const Percept& seen, const SE3& prediction, const SweepTiming& timing,
+                                       std::size_t frame) const;
+  PoseEstimate refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
+                           const SweepTiming& timing);
+  void clear_maps();
+  void clear_local_maps();
+  bool local_maps_are_empty() const;
+  void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
+
+  void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
+              FrameResult& result);
+
+  PipelineConfig config_;
+  State state_;
+  LocalMaps local_maps_;
+  StaticMap static_map_;
+};
+
+}  // namespace mlo

@@ -1,0 +1,145 @@
+#include "mlo/pipeline/run.hpp"
+
+#include <algorithm>
+#include <future>
+
+#include <fmt/format.h>
+
+#include "mlo/core/error.hpp"
+#include "mlo/io/atomic_file.hpp"
+#include "mlo/io/detection_check.hpp"
+#include "mlo/pipeline/pipeline.hpp"
+#include "mlo/pipeline/run_output.hpp"
+#include "mlo/pipeline/run_report.hpp"
+
+namespace mlo {
+namespace {
+
+constexpr std::size_t kMaxListedProblems = 20;
+// Detections are checked against this many scans; more would say the same.
+constexpr std::size_t kCheckedScans = 10;
+
+std::vector<std::size_t> select_indices(const Dataset& dataset, const RunOptions& options) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < dataset.scans->size(); ++i) {
+    const std::size_t frame = dataset.scans->frame(i);
+    if (frame >= options.first_frame && frame <= options.last_frame) indices.push_back(i);
+  }
+  if (indices.empty()) {
+    throw InputError(fmt::format("{}: none of its {} scans is within the frames asked for ({} to {})",
+                                 dataset.root.string(), dataset.scans->size(), options.first_frame,
+                                 options.last_frame));
+  }
+  return indices;
+}
+
+std::vector<Detection> detections_of(const std::optional<DetectionList>& list, const Scan& scan) {
+  std::vector<Detection> detections;
+  if (!list) return detections;
+  for (const DetectionRecord& record : list->at(scan.frame, scan.stamp_s)) {
+    detections.push_back(record.detection);
+  }
+  return detections;
+}
+
+// Boxes that hold no points are most often in the wrong frame, unit or convention. Looks at scans from all
+// over the sequence.
+void warn_of_strange_boxes(const Dataset& dataset, const std::vector<std::size_t>& indices,
+                           const DetectionList& list, RunSummary& summary) {
+  std::vector<Scan> scans;
+  std::vector<ScanWithDetections> samples;
+  const std::size_t step = std::max<std::size_t>(1, indices.size() / kCheckedScans);
+  scans.reserve(indices.size() / step + 1);  // samples refer to the elements
+  for (std::size_t i = 0; i < indices.size(); i += step) {
+    ScanReading reading = dataset.scans->read(indices[i]);
+    if (!reading.scan) continue;
+    std::vector<Detection> boxes = detections_of(list, *reading.scan);
+    if (boxes.empty()) continue;
+    scans.push_back(std::move(*reading.scan));
+    samples.push_back({scans.back().points, std::move(boxes)});
+  }
+  const std::string problem = check_detections(samples, dataset.calibration).problem;
+  if (!problem.empty()) summary.warnings.push_back(problem);
+}
+
+void tally(const FrameResult& result, RunSummary& summary) {
+  ++summary.processed;
+  summary.times.push_back(result.times);
+  if (!result.localised()) ++summary.predicted;
+  if (result.refinement.degenerate_directions > 0) ++summary.degenerate;
+  if (result.consistency.run && !result.consistency.passed) ++summary.failed_checks;
+}
+
+void skip(std::size_t frame, const std::string& problem, double sweeps_ahead, const Pipeline& pipeline,
+          RunOutput& output, RunSummary& summary) {
+  output.write_skipped(frame, problem, pipeline.predict_poses(sweeps_ahead));
+  ++summary.skipped;
+  if (summary.skipped <= kMaxListedProblems) {
+    summary.warnings.push_back(fmt::format("scan {} was skipped: {}", frame, problem));
+  }
+}
+
+}  // namespace
+
+RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detections,
+               const PipelineConfig& config, const RunOptions& options,
+               const std::function<void(std::size_t, std::size_t)>& on_scan,
+               const std::function<bool()>& should_stop) {
+  const std::vector<std::size_t> indices = select_indices(dataset, options);
+  RunSummary summary;
+  summary.scans = indices.size();
+  summary.warnings = dataset.warnings;
+  if (detections) warn_of_strange_boxes(dataset, indices, *detections, summary);
+
+  RunOutput output(options.out, dataset.calibration.T_camera0_lidar);
+  write_file_atomically(options.out / "config.yaml", to_yaml(config));
+  Pipeline pipeline(config);
+  std::optional<Eigen::Vector3d> last_position;
+  double skipped_in_a_row = 0.0;
+  std::string first_problem;
+  const auto read = [&](std::size_t i) {
+    return std::async(std::launch::async, [&, i] { return dataset.scans->read(indices[i]); });
+  };
+  std::future<ScanReading> next = read(0);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const ScanReading reading = next.get();
+    if (should_stop && should_stop()) {
+      summary.interrupted = true;
+      break;
+    }
+    if (i + 1 < indices.size()) next = read(i + 1);
+    summary.invalid_points += reading.invalid_points;
+    if (!reading.scan) {
+      if (first_problem.empty()) first_problem = reading.problem;
+      skip(dataset.scans->frame(indices[i]), reading.problem, ++skipped_in_a_row, pipeline, output, summary);
+    } else {
+      skipped_in_a_row = 0.0;
+      const std::vector<Detection> boxes = detections_of(detections, *reading.scan);
+      summary.detections += boxes.size();
+      const FrameResult result = pipeline.process(*reading.scan, boxes);
+      output.write(result);
+      tally(result, summary);
+      const Eigen::Vector3d& position = result.T_map_lidar.translation();
+      if (last_position) summary.path_m += (position - *last_position).norm();
+      last_position = position;
+    }
+    if (options.checkpoint_scans > 0 && (i + 1) % options.checkpoint_scans == 0) {
+      output.write_map(pipeline.static_map().points());
+    }
+    if (on_scan) on_scan(i + 1, indices.size());
+  }
+  output.write_map(pipeline.static_map().points());
+  summary.map_points = pipeline.static_map().size();
+  if (summary.skipped > kMaxListedProblems) {
+    summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
+                                           summary.skipped - kMaxListedProblems));
+  }
+  write_file_atomically(options.out / "run.json", to_json(dataset, config, summary));
+  if (summary.processed == 0 && !summary.interrupted) {
+    throw InputError(fmt::format("{}: none of the {} scans could be used; the first problem: {}",
+                                 dataset.root.string(), summary.scans, first_problem));
+  }
+  return summary;
+}
+
+}  // namespace mlo

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mlo/io/dataset.hpp"
+#include "mlo/io/detections.hpp"
+#include "mlo/pipeline/config.hpp"
+#include "mlo/pipeline/frame_result.hpp"
+
+namespace mlo {
+
+struct RunOptions {
+  std::filesystem::path out;
+  std::size_t first_frame = 0;                             ///< frame numbers, both ends included
+  std::size_t last_frame = static_cast<std::size_t>(-1);
+  std::size_t checkpoint_scans = 500;  ///< the static map is saved this often, 0 only at the end
+};
+
+/// What a run did; written to run.json.
+struct RunSummary {
+  std::size_t scans = 0;      ///< that should have been there
+  std::size_t processed = 0;
+  std::size_t skipped = 0;
+  std::size_t predicted = 0;  ///< processed, but too few matches: the pose is a prediction
+  std::size_t degenerate = 0;
+  std::size_t failed_checks = 0;  ///< consistency checks without a set that passed
+  std::size_t invalid_points = 0;
+  std::size_t detections = 0;
+  double path_m = 0.0;
+  std::size_t map_points = 0;
+  bool interrupted = false;
+  std::vector<StageTimes> times;      ///< one per processed scan
+  std::vector<std::string> warnings;  ///< one sentence each
+};
+
+/// Runs the pipeline over a data set and writes its results; the next scan is read while one is computed.
+/// @param detections   boxes by frame; none: no objects are cut out
+/// @param on_scan      called after each scan with the number done and the number in total; may be empty
+/// @param should_stop  asked before each scan; true ends the run early with everything written
+/// @throws InputError when no scan can be used, or the results cannot be written
+RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detections,
+               const PipelineConfig& config, const RunOptions& options,
+               const std::function<void(std::size_t, std::size_t)>& on_scan,
+               const std::function<bool()>& should_stop);
+
+}  // namespace mlo

@@ -1,0 +1,105 @@
+#include "mlo/pipeline/run_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mlo/core/error.hpp"
+#include "mlo/io/point_cloud_file.hpp"
+#include "mlo/io/trajectory_file.hpp"
+
+namespace mlo {
+namespace {
+
+constexpr std::string_view kPerScanHeader =
+    "frame,stamp_s,status,x_m,y_m,z_m,odometry_status,consistency_passed,consistent_share,"
+    "refinement_status,degenerate_directions,matches,iterations,rms_residual_m,points,ground_points,"
+    "ground_features,edge_features,surface_features,candidates,objects,object_points,ambiguous_points";
+
+std::filesystem::path create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(fmt::format("{}: the folder cannot be created ({}); choose another with --out",
+                                 folder.string(), error.message()));
+  }
+  return folder;
+}
+
+std::string per_scan_row(const FrameResult& result) {
+  const Eigen::Vector3d& p = result.T_map_lidar.translation();
+  const PerceptCounts& counts = result.counts;
+  std::string row = fmt::format(
+      "{},{:.6f},{},{:.4f},{:.4f},{:.4f},{},{},{:.4f},{},{},{},{},{:.5f},{},{},{},{},{},{},{},{},{}",
+      result.frame, result.stamp_s, result.first ? "first" : (result.localised() ? "localised" : "predicted"),
+      p.x(), p.y(), p.z(), to_string(result.odometry.status),
+      result.consistency.run ? (result.consistency.passed ? "yes" : "no") : "not_run",
+      result.consistency.share, to_string(result.refinement.status), result.refinement.degenerate_directions,
+      result.refinement.num_matches, result.refinement.iterations, result.refinement.rms_residual_m,
+      counts.points, counts.ground_points, counts.ground_features, counts.edge_features,
+      counts.surface_features, counts.candidates, counts.objects, counts.object_points,
+      counts.ambiguous_points);
+  for (const double ms : result.times.ms) row += fmt::format(",{:.2f}", ms);
+  return row + ",";
+}
+
+}  // namespace
+
+RunOutput::TextFile::TextFile(const std::filesystem::path& file) : path(file), stream(file) {
+  if (!stream) {
+    throw InputError(fmt::format("{}: cannot be written; choose another folder with --out", path.string()));
+  }
+}
+
+void RunOutput::TextFile::write_row(const std::string& row) {
+  stream << row << '\n';
+  stream.flush();
+  if (!stream) {
+    throw InputError(
+        fmt::format("{}: writing failed, the disk may be full; the rows before are kept", path.string()));
+  }
+}
+
+RunOutput::RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar)
+    : folder_(create_folder(folder)),
+      T_camera_lidar_(T_camera_lidar),
+      trajectory_(folder / "trajectory.txt"),
+      trajectory_tum_(folder / "trajectory_tum.txt"),
+      odometry_(folder / "odometry.txt"),
+      per_scan_(folder / "per_scan.csv") {
+  if (T_camera_lidar_) trajectory_camera_.emplace(folder / "trajectory_camera.txt");
+  std::string header(kPerScanHeader);
+  for (const std::string_view stage : kStageNames) header += fmt::format(",{}_ms", stage);
+  per_scan_.write_row(header + ",problem");
+}
+
+void RunOutput::write_poses(const SE3& T_map_lidar, const SE3& T_odom_lidar) {
+  trajectory_.write_row(kitti_row(T_map_lidar));
+  odometry_.write_row(kitti_row(T_odom_lidar));
+  if (trajectory_camera_) {
+    trajectory_camera_->write_row(kitti_row(*T_camera_lidar_ * T_map_lidar * T_camera_lidar_->inverse()));
+  }
+}
+
+void RunOutput::write(const FrameResult& result) {
+  write_poses(result.T_map_lidar, result.T_odom_lidar);
+  trajectory_tum_.write_row(tum_row(result.stamp_s, result.T_map_lidar));
+  per_scan_.write_row(per_scan_row(result));
+}
+
+void RunOutput::write_skipped(std::size_t frame, const std::string& problem,
+                              const PredictedPoses& predicted) {
+  write_poses(predicted.T_map_lidar, predicted.T_odom_lidar);
+  std::string quoted;
+  for (const char c : problem) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  const auto columns = static_cast<std::size_t>(
+      std::count(kPerScanHeader.begin(), kPerScanHeader.end(), ',') + 1 + static_cast<long>(kNumStages));
+  per_scan_.write_row(fmt::format("{},,skipped{}\"{}\"", frame, std::string(columns - 2, ','), quoted));
+}
+
+void RunOutput::write_map(std::span<const MapPoint> points) const {
+  write_ply(folder_ / "static_map.ply", points);
+  write_pcd(folder_ / "static_map.pcd", points);
+}
+
+}  // namespace mlo

@@ -1,0 +1,114 @@
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+#include "temp_folder.hpp"
+
+namespace mlo {
+namespace {
+
+using test::TempFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string straight_rows(int count, double step_m) {
+  std::string rows;
+  for (int i = 0; i < count; ++i) rows += "1 0 0 " + std::to_string(step_m * i) + " 0 1 0 0 0 0 1 0\n";
+  return rows;
+}
+
+TEST(EvalTrajectory, ComparesEstimatesInOneTable) {
+  const TempFolder folder;
+  const std::string truth = folder.write("truth.txt", straight_rows(20, 1.0)).string();
+  const std::string good = folder.write("good.txt", straight_rows(10, 1.0)).string();
+  const std::string bad = folder.write("bad.txt", straight_rows(20, 1.5)).string();
+  const ProgramRun run = run_program({"eval", "trajectory", "--truth", truth, "--estimate", good, bad});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out,
+              HasSubstr(good + ": matched by frame, 10 pairs; without a partner: 10 of the truth, 0 of the"));
+  EXPECT_THAT(run.out, AllOf(HasSubstr("ATE [m]"), HasSubstr("0.5000")));
+}
+
+TEST(EvalTrajectory, JsonAndPlot) {
+  const TempFolder folder;
+  const std::string truth = folder.write("truth.txt", straight_rows(20, 1.0)).string();
+  const std::string estimate = folder.write("estimate.txt", straight_rows(20, 1.5)).string();
+  const std::string plot = (folder.path() / "plot.svg").string();
+  const ProgramRun run =
+      run_program({"eval", "trajectory", "--truth", truth, "--estimate", estimate, "--json", "--plot", plot});
+  ASSERT_EQ(run.exit_code, 0);
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_NEAR(json["estimates"][0]["rte_m_per_frame"].get<double>(), 0.5, 1e-9);
+  EXPECT_EQ(json["estimates"][0]["frames"].size(), 20U);
+  EXPECT_TRUE(json["estimates"][0]["kitti"]["translation_percent"].is_null());
+  EXPECT_THAT(read_text(plot), testing::StartsWith("<svg"));
+}
+
+TEST(EvalTrajectory, CalibrationBringsCameraPosesToTheLidar) {
+  const TempFolder folder;
+  // The camera looks along the lidar's x: camera z. Its truth moves along z, the lidar's estimate along x.
+  const std::string calib = folder.write("calib.txt", "Tr: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n").string();
+  std::string rows;
+  for (int i = 0; i < 5; ++i) rows += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(i) + "\n";
+  const std::string truth = folder.write("truth.txt", rows).string();
+  const std::string estimate = folder.write("estimate.txt", straight_rows(5, 1.0)).string();
+  const ProgramRun run = run_program(
+      {"eval", "trajectory", "--truth", truth, "--calib", calib, "--estimate", estimate, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_NEAR(json["estimates"][0]["rte_m_per_frame"].get<double>(), 0.0, 1e-9);
+}
+
+TEST(EvalTrajectory, MistakesEndWithOneAndNameTheFile) {
+  const TempFolder folder;
+  const std::string truth = folder.write("truth.txt", straight_rows(3, 1.0)).string();
+  const std::string broken = folder.write("broken.txt", straight_rows(3, 1.0) + "1 2 3\n").string();
+  const ProgramRun run = run_program({"eval", "trajectory", "--truth", truth, "--estimate", broken});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr(broken + ":4"));
+  EXPECT_EQ(
+      run_program({"eval", "trajectory", "--truth", truth, "--estimate", truth, "--match", "time"}).exit_code,
+      1);
+  EXPECT_EQ(run_program({"eval", "trajectory", "--truth", truth}).exit_code, 2);
+}
+
+TEST(EvalTracking, ScoresFoldersAndFiles) {
+  const TempFolder folder;
+  const std::string car = " 1 Car 0 0 0 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0";
+  const std::string label = "0" + car + "\n1" + car + "\n";
+  folder.write("truth/0000.txt", label);
+  folder.write("truth/0002.txt", label);
+  folder.write("tracks/0000.txt", "0" + car + " 3.5\n1" + car + " 3.5\n");
+  const std::string truth = (folder.path() / "truth").string();
+  const std::string tracks = (folder.path() / "tracks").string();
+
+  const ProgramRun missing = run_program({"eval", "tracking", "--truth", truth, "--estimate", tracks});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("0002.txt"), HasSubstr("--sequences")));
+
+  const ProgramRun table =
+      run_program({"eval", "tracking", "--truth", truth, "--estimate", tracks, "--sequences", "0000"});
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_THAT(table.out, AllOf(HasSubstr("TrackEval"), HasSubstr("KITTI kit: MOTA 100.00"),
+                               HasSubstr("AB3DMOT: sAMOTA"), HasSubstr("3D boxes, IoU 0.7")));
+  const ProgramRun json = run_program({"eval", "tracking", "--truth", truth + "/0000.txt", "--estimate",
+                                       tracks + "/0000.txt", "--match", "image", "--json"});
+  ASSERT_EQ(json.exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(json.out)[0]["all"]["hota"].get<double>(), 1.0);
+}
+
+TEST(EvalTracking, TracksWithoutImageBoxesAreRefused) {
+  const TempFolder folder;
+  const std::string rest = " 1.5 1.6 4.0 2.0 1.7 20.0 0.0\n";
+  const std::string truth = folder.write("truth.txt", "0 1 Car 0 0 0 10 20 110 70" + rest).string();
+  const std::string tracks = folder.write("tracks.txt", "0 1 Car 0 0 0 -1 -1 -1 -1" + rest).string();
+  const ProgramRun run = run_program({"eval", "tracking", "--truth", truth, "--estimate", tracks});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("no image box"));
+}
+
+}  // namespace
+}  // namespace mlo

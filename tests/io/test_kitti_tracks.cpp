@@ -1,0 +1,85 @@
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mlo/core/error.hpp"
+#include "mlo/io/kitti_tracks.hpp"
+#include "temp_folder.hpp"
+
+namespace mlo {
+namespace {
+
+using test::TempFolder;
+
+constexpr const char* kCar = "3 7 Car 1 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0";
+constexpr const char* kDontCare = "3 -1 DontCare -1 -1 -10 5 6 7 8 -1000 -1000 -1000 -10 -1 -1 -1";
+
+TEST(KittiTracks, ReadsLabelsInLevelAxes) {
+  const TempFolder folder;
+  const auto records = read_kitti_tracks(folder.write("a.txt", std::string(kCar) + "\n" + kDontCare + "\n"));
+  ASSERT_EQ(records.size(), 2U);
+  const ObjectRecord& car = records[0];
+  EXPECT_EQ(car.frame, 3U);
+  EXPECT_EQ(car.track_id, 7);
+  EXPECT_EQ(car.type, "car");
+  EXPECT_EQ(car.truncation, 1);
+  EXPECT_EQ(car.occlusion, 2);
+  EXPECT_EQ(car.image_box.left_px, 10.0);
+  EXPECT_EQ(car.image_box.bottom_px, 70.0);
+  EXPECT_EQ(car.score, 1.0);
+  // 20 m ahead, 2 m to the right, the bottom 1.7 m below the camera; rotation 0 heads to the right.
+  EXPECT_TRUE(car.box.center_lidar_m.isApprox(Eigen::Vector3d(20.0, -2.0, -0.95), 1e-12));
+  EXPECT_TRUE(car.box.size_lwh_m.isApprox(Eigen::Vector3d(4.0, 1.6, 1.5), 1e-12));
+  const Eigen::Vector3d heading = car.box.T_lidar_object().rotation() * Eigen::Vector3d::UnitX();
+  EXPECT_TRUE(heading.isApprox(-Eigen::Vector3d::UnitY(), 1e-12)) << heading.transpose();
+  EXPECT_EQ(records[1].track_id, -1);
+  EXPECT_EQ(records[1].type, "dontcare");
+}
+
+TEST(KittiTracks, RotationAboutTheCamerasYTurnsTheOtherWay) {
+  const TempFolder folder;
+  // Rotation -pi/2 heads ahead.
+  const auto records = read_kitti_tracks(
+      folder.write("a.txt", "0 1 Car 0 0 0 1 2 3 4 1.5 1.6 4 0 0 10 -1.5707963267948966 8.25\n"));
+  const Eigen::Vector3d heading = records.at(0).box.T_lidar_object().rotation() * Eigen::Vector3d::UnitX();
+  EXPECT_TRUE(heading.isApprox(Eigen::Vector3d::UnitX(), 1e-12)) << heading.transpose();
+  EXPECT_EQ(records[0].score, 8.25);
+}
+
+TEST(KittiTracks, ReadsFoldersBySequenceAndSingleFiles) {
+  const TempFolder folder;
+  folder.write("tracks/0002.txt", kCar);
+  folder.write("tracks/0000.txt", "");
+  folder.write("tracks/readme.md", "not a track");
+  const auto sequences = read_kitti_sequences(folder.path() / "tracks");
+  ASSERT_EQ(sequences.size(), 2U);
+  EXPECT_TRUE(sequences.at("0000").empty());
+  EXPECT_EQ(sequences.at("0002").size(), 1U);
+  EXPECT_EQ(read_kitti_sequences(folder.path() / "tracks" / "0002.txt").at("0002").size(), 1U);
+}
+
+TEST(KittiTracks, ProblemsNameFileAndLine) {
+  const TempFolder folder;
+  const auto problem = [&](const std::string& text) -> std::string {
+    try {
+      read_kitti_tracks(folder.write("bad.txt", std::string(kCar) + "\n" + text + "\n"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  for (const char* line :
+       {"3 7 Car 1 2 -1.5 10 20", "x 7 Car 1 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0",
+        "-1 7 Car 1 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0",
+        "1 7.5 Car 1 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0",
+        "1 7 Car 1 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 nan 20.0 0.0", "junk"}) {
+    EXPECT_THAT(problem(line), testing::HasSubstr("bad.txt:2")) << line;
+  }
+  EXPECT_THROW(read_kitti_sequences(folder.path() / "absent"), InputError);
+  std::filesystem::create_directory(folder.path() / "empty");
+  EXPECT_THROW(read_kitti_sequences(folder.path() / "empty"), InputError);
+}
+
+}  // namespace
+}  // namespace mlo

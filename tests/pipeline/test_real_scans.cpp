@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "mlo/io/dataset.hpp"
+#include "mlo/io/trajectory_file.hpp"
+#include "mlo/pipeline/pipeline.hpp"
+#include "real_data.hpp"
+
+namespace mlo {
+namespace {
+
+constexpr std::size_t kScans = 20;
+
+/// Mean error of the motion from scan to scan over the first scans [m]; no scan may be lost.
+double mean_step_error_m(const std::filesystem::path& folder, const std::filesystem::path& truth_file,
+                         RegionOfInterest roi) {
+  const Dataset dataset = open_dataset(folder, {});
+  const PoseList truth = read_trajectory(truth_file);
+  PipelineConfig config;
+  config.sensor = dataset.sensor;
+  config.input.roi = roi;
+  Pipeline pipeline(config);
+  double sum_m = 0.0;
+  SE3 previous;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const ScanReading reading = dataset.scans->read(i);
+    if (!reading.scan) {
+      ADD_FAILURE() << reading.problem;
+      continue;
+    }
+    const FrameResult result = pipeline.process(*reading.scan, {});
+    EXPECT_TRUE(result.localised()) << "scan " << i;
+    if (i > 0) {
+      const SE3 true_step = truth.T_world_body.at(i - 1).inverse() * truth.T_world_body.at(i);
+      sum_m += (true_step.inverse() * (previous.inverse() * result.T_map_lidar)).translation().norm();
+    }
+    previous = result.T_map_lidar;
+  }
+  return sum_m / static_cast<double>(kScans - 1);
+}
+
+TEST(RealScans, CompensatedOdometryScansAreFollowed) {
+  const auto data = test::real_data();
+  if (!data) GTEST_SKIP() << test::kNoRealData;
+  const auto folder = *data / "kitti_odometry" / "sequences" / "04";
+  EXPECT_LT(mean_step_error_m(folder, *data / "truth_lidar" / "04.txt", RegionOfInterest::full), 0.022);
+}
+
+TEST(RealScans, RawScansAreFollowedWithTheWholeAndTheCamerasView) {
+  const auto data = test::real_data();
+  if (!data) GTEST_SKIP() << test::kNoRealData;
+  const auto folder = *data / "kitti_raw" / "2011_09_26" / "2011_09_26_drive_0009_sync";
+  const auto truth = *data / "truth_lidar" / "0009_vel.txt";
+  EXPECT_LT(mean_step_error_m(folder, truth, RegionOfInterest::full), 0.025);
+  EXPECT_LT(mean_step_error_m(folder, truth, RegionOfInterest::camera), 0.025);
+}
+
+}  // namespace
+}  // namespace mlo
