@@ -15,7 +15,9 @@ class Placement {
  public:
   Placement(const SE3& T_previous_current, const SweepTiming& timing)
       : T_previous_current_(T_previous_current) {
-    if (!timing.motion_compensated) motion_ = SweepMotion::from_increment(T_previous_current, timing);
+    if (timing.motion_compensated) return;
+    motion_ = SweepMotion::from_increment(T_previous_current, timing);
+    sweeps_since_previous_ = timing.sweeps_since_previous;
   }
 
   Eigen::Vector3d operator()(const FeaturePoint& feature) const {
@@ -26,14 +28,17 @@ class Placement {
     const Eigen::Vector3d p = feature.p_lidar.cast<double>();
     return motion_ ? motion_->undistort(p, feature.sweep_fraction) : p;
   }
-  /// Share of a change of the increment that reaches the point: 1 + s - r, to first order in its rotation.
+  /// Share of a change of the increment that reaches the point: 1 + s - r (of one sweep), to first order in
+  /// its rotation.
   double gain(const FeaturePoint& feature) const {
-    return motion_ ? 1.0 + feature.sweep_fraction - motion_->reference_fraction() : 1.0;
+    if (!motion_) return 1.0;
+    return 1.0 + (feature.sweep_fraction - motion_->reference_fraction()) / sweeps_since_previous_;
   }
 
  private:
   SE3 T_previous_current_;
   std::optional<SweepMotion> motion_;
+  double sweeps_since_previous_ = 1.0;
 };
 
 }  // namespace mlo
