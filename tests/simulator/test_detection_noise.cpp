@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mlo/simulator/angles.hpp"
+#include "mlo/io/kitti_box.hpp"
 #include "mlo/simulator/detection_noise.hpp"
 
 namespace mlo::simulator {
@@ -54,7 +54,7 @@ TEST(DetectionNoise, MissesFlipsAndFalsePositivesHaveTheirShares) {
   EXPECT_NEAR(static_cast<double>(detections.size()) / 2000.0, 0.7, 0.04);
   double flipped = 0.0;
   for (const Detection& detection : detections) {
-    flipped += std::abs(wrapped_rad(detection.box.yaw_rad - 0.3)) > 1.0 ? 1.0 : 0.0;
+    flipped += std::cos(detection.box.yaw_rad - 0.3) < 0.0 ? 1.0 : 0.0;
   }
   EXPECT_NEAR(flipped / static_cast<double>(detections.size()), 0.2, 0.04);
 
@@ -104,11 +104,11 @@ TEST(Camera, ABoxAtTheEdgeIsTruncatedByItsShareOutside) {
 
 TEST(Camera, KittiAnglesOfACarAheadDrivingAwayAreMinusHalfPi) {
   const Rig rig;
-  const CameraBox box = camera_box(rig, {{20.0, 0.0, -0.9}, {4.0, 1.7, 1.5}, 0.0});
+  const KittiBox box = box_in_camera({{20.0, 0.0, -0.9}, {4.0, 1.7, 1.5}, 0.0}, rig.T_camera_lidar);
   EXPECT_NEAR(box.rotation_y_rad, -0.5 * std::numbers::pi, 0.03);
-  EXPECT_NEAR(box.alpha_rad, box.rotation_y_rad, 0.03);
-  EXPECT_NEAR(box.bottom_camera_m.z(), 20.0, 0.5);
-  EXPECT_NEAR(box.bottom_camera_m.y(), 1.65 - 0.08, 0.4);
+  EXPECT_NEAR(observation_angle_rad(box), box.rotation_y_rad, 0.03);
+  EXPECT_NEAR(box.bottom_camera0_m.z(), 20.0, 0.5);
+  EXPECT_NEAR(box.bottom_camera0_m.y(), 1.65 - 0.08, 0.4);
 }
 
 }  // namespace

@@ -34,20 +34,8 @@ struct ImageView {
 /// Nothing when no part of the box is in front of the camera and inside the image.
 std::optional<ImageView> project(const Rig& rig, const Box3d& box_lidar);
 
-/// A box as KITTI writes it: bottom middle in camera 0 [m], rotation about the camera's y axis, observation
-/// angle.
-struct CameraBox {
-  Eigen::Vector3d bottom_camera_m = Eigen::Vector3d::Zero();
-  double rotation_y_rad = 0.0;
-  double alpha_rad = 0.0;
-};
-CameraBox camera_box(const Rig& rig, const Box3d& box_lidar);
-
 /// KITTI's calibration files: that of a tracking sequence, and that of an odometry sequence.
 std::string tracking_calibration(const Rig& rig);
 std::string odometry_calibration(const Rig& rig);
-
-/// Twelve numbers, the upper three rows of the pose's matrix: a line of a KITTI poses file, without its end.
-std::string kitti_row(const SE3& pose);
 
 }  // namespace mlo::simulator

@@ -9,6 +9,7 @@
 
 #include "mlo/io/atomic_file.hpp"
 #include "mlo/io/point_cloud_file.hpp"
+#include "mlo/io/trajectory_file.hpp"
 
 namespace mlo::simulator {
 namespace {

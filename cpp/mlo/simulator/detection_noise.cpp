@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "mlo/simulator/angles.hpp"
+#include "mlo/io/kitti_box.hpp"
 
 namespace mlo::simulator {
 namespace {
@@ -27,7 +27,7 @@ Box3d disturbed(const Box3d& truth, const DetectorErrors& errors, Random& random
   for (double& side : box.size_lwh_m) side *= std::max(0.2, 1.0 + errors.size_share * random.normal());
   box.yaw_rad += (errors.yaw_rad + errors.yaw_per_m * distance) * random.normal();
   if (random.chance(errors.flip_share)) box.yaw_rad += std::numbers::pi;
-  box.yaw_rad = wrapped_rad(box.yaw_rad);
+  box.yaw_rad = std::remainder(box.yaw_rad, 2.0 * std::numbers::pi);
   return box;
 }
 
@@ -129,15 +129,15 @@ std::string ab3dmot_lines(const Rig& rig, std::size_t frame, const std::vector<D
     const int type = ab3dmot_type(detection.object_class);
     const std::optional<ImageView> view = project(rig, detection.box);
     if (type == 0 || !view) continue;
-    const CameraBox box = camera_box(rig, detection.box);
+    const KittiBox box = box_in_camera(detection.box, rig.T_camera_lidar);
     const Eigen::Vector3d& size = detection.box.size_lwh_m;
     const double p = std::clamp(detection.confidence, kSure, 1.0 - kSure);
     lines += fmt::format(
         "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
         "{:.4f}\n",
         frame, type, view->box.left_px, view->box.top_px, view->box.right_px, view->box.bottom_px,
-        std::log(p / (1.0 - p)), size.z(), size.y(), size.x(), box.bottom_camera_m.x(),
-        box.bottom_camera_m.y(), box.bottom_camera_m.z(), box.rotation_y_rad, box.alpha_rad);
+        std::log(p / (1.0 - p)), size.z(), size.y(), size.x(), box.bottom_camera0_m.x(),
+        box.bottom_camera0_m.y(), box.bottom_camera0_m.z(), box.rotation_y_rad, observation_angle_rad(box));
   }
   return lines;
 }

@@ -53,7 +53,7 @@ struct DetectorErrors {
 std::vector<Detection> detect(const std::vector<ObjectTruth>& objects, const DetectorErrors& errors,
                               Random random);
 
-/// Lines `frame,class,x_m,y_m,z_m,length_m,width_m,height_m,yaw_rad,score` (lidar frame, box centre, [m], [rad]).
+/// Lines of the project's own CSV (docs/detections.md): lidar frame, box centre.
 std::string detection_csv_header();
 std::string detection_csv_lines(std::size_t frame, const std::vector<Detection>& detections);
 

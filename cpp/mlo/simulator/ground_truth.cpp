@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "mlo/io/kitti_box.hpp"
 #include "mlo/simulator/surfaces.hpp"
 
 namespace mlo::simulator {
@@ -109,15 +110,15 @@ std::string label_lines(const Rig& rig, std::size_t frame, const std::vector<Obj
   for (const ObjectTruth& object : objects) {
     const std::optional<ImageView> view = project(rig, object.box_lidar);
     if (object.points < kMinLabelPoints || !view) continue;
-    const CameraBox box = camera_box(rig, object.box_lidar);
+    const KittiBox box = box_in_camera(object.box_lidar, rig.T_camera_lidar);
     const Eigen::Vector3d& size = object.box_lidar.size_lwh_m;
     lines += fmt::format(
         "{} {} {} {} {} {:.6f} {:.2f} {:.2f} {:.2f} {:.2f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} "
         "{:.6f}\n",
         frame, object.id, label_type(object.object_class), truncation_level(view->truncation),
-        occlusion_level(object.visible_share), box.alpha_rad, view->box.left_px, view->box.top_px,
-        view->box.right_px, view->box.bottom_px, size.z(), size.y(), size.x(), box.bottom_camera_m.x(),
-        box.bottom_camera_m.y(), box.bottom_camera_m.z(), box.rotation_y_rad);
+        occlusion_level(object.visible_share), observation_angle_rad(box), view->box.left_px,
+        view->box.top_px, view->box.right_px, view->box.bottom_px, size.z(), size.y(), size.x(),
+        box.bottom_camera0_m.x(), box.bottom_camera0_m.y(), box.bottom_camera0_m.z(), box.rotation_y_rad);
   }
   return lines;
 }
