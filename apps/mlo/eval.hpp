@@ -8,5 +8,6 @@ namespace mlo::apps {
 void add_eval_trajectory(CLI::App& eval);
 void add_eval_tracking(CLI::App& eval);
 void add_eval_map(CLI::App& eval);
+void add_eval_objects(CLI::App& eval);
 
 }  // namespace mlo::apps

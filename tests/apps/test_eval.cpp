@@ -110,5 +110,83 @@ TEST(EvalTracking, TracksWithoutImageBoxesAreRefused) {
   EXPECT_THAT(run.err, HasSubstr("no image box"));
 }
 
+constexpr const char* kAsciiPcd =
+    "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+    "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n";
+
+TEST(EvalMap, MeasuresRemovalAgainstLabels) {
+  const TempFolder folder;
+  const std::string truth = folder.write("gt.pcd", std::string(kAsciiPcd) + "1 0 0 0\n5 0 0 1\n").string();
+  const std::string clean = folder.write("clean.pcd", std::string(kAsciiPcd) + "1 0 0 0\n1 0 0 0\n").string();
+  const std::string raw = folder.write("raw.pcd", std::string(kAsciiPcd) + "1 0 0 0\n5 0 0 0\n").string();
+  const ProgramRun table = run_program({"eval", "map", "--cloud", clean, "--cloud", raw, "--truth", truth});
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, AllOf(HasSubstr("ERASOR"), HasSubstr("100.00")));
+  const ProgramRun run =
+      run_program({"eval", "map", "--cloud", clean, "--cloud", raw, "--truth", truth, "--json"});
+  ASSERT_EQ(run.exit_code, 0);
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json[0]["removal"]["f1"].get<double>(), 1.0);
+  EXPECT_EQ(json[1]["removal"]["rejection_rate"].get<double>(), 0.0);
+  EXPECT_EQ(json[1]["removal"]["static_accuracy"].get<double>(), 1.0);
+}
+
+TEST(EvalMap, AFolderWithoutLabelsIsRefused) {
+  const TempFolder folder;
+  folder.write("scans/000000.bin", std::string(64, '\0'));
+  const std::string map = folder.write("map.pcd", std::string(kAsciiPcd) + "1 0 0 0\n5 0 0 1\n").string();
+  const ProgramRun run =
+      run_program({"eval", "map", "--cloud", map, "--truth", (folder.path() / "scans").string()});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("label"));
+}
+
+TEST(EvalObjects, MeasuresTrajectoriesAndCountsLosses) {
+  const TempFolder folder;
+  std::string truth = "frame,id,class,x_m,y_m,z_m,qx,qy,qz,qw\n";
+  std::string tracks = truth;
+  for (int frame = 0; frame < 10; ++frame) {
+    const std::string start = std::to_string(frame) + ",";
+    const std::string x = std::to_string(frame);
+    truth += start + "1,car," + x + ",0,0,0,0,0,1\n";
+    truth += start + "2,van," + x + ",9,0,0,0,0,1\n";
+    tracks += start + "40,car," + x + ",0.5,0,0,0,0,1\n";
+  }
+  const std::string truth_file = folder.write("truth.csv", truth).string();
+  const std::string track_file = folder.write("tracks.csv", tracks).string();
+  const ProgramRun table = run_program({"eval", "objects", "--truth", truth_file, "--estimate", track_file});
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, AllOf(HasSubstr("RTE [m/m]"), HasSubstr("2 objects: 1 lost, 0 with switches")));
+  const ProgramRun run = run_program(
+      {"eval", "objects", "--truth", truth_file, "--estimate", track_file, "--class", "car", "--json"});
+  ASSERT_EQ(run.exit_code, 0);
+  const auto json = nlohmann::json::parse(run.out);
+  ASSERT_EQ(json["objects"].size(), 1U);
+  EXPECT_EQ(json["objects"][0]["track"].get<int>(), 40);
+  EXPECT_NEAR(json["all"]["position_rmse_m"].get<double>(), 0.5, 1e-9);
+  EXPECT_NEAR(json["all"]["ate_m"].get<double>(), 0.0, 1e-9);
+}
+
+TEST(EvalObjects, KittiLabelsNeedPosesAndCalibration) {
+  const TempFolder folder;
+  std::string labels;
+  for (const char* frame : {"0", "1"}) {
+    labels += std::string(frame) + " 5 Car 0 0 0 1 1 50 50 1.5 1.6 4.0 2.0 1.7 20.0 0.0\n";
+  }
+  const std::string truth = folder.write("0000.txt", labels).string();
+  const std::string poses = folder.write("poses.txt", straight_rows(2, 3.0)).string();
+  const std::string calib = folder.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n").string();
+  const ProgramRun refused = run_program({"eval", "objects", "--truth", truth, "--estimate", truth});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("--truth-poses"), HasSubstr("--calib")));
+  const ProgramRun run =
+      run_program({"eval", "objects", "--truth", truth, "--truth-poses", poses, "--estimate", truth,
+                   "--estimate-poses", poses, "--calib", calib, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["all"]["tracked_frames"].get<int>(), 2);
+  EXPECT_NEAR(json["objects"][0]["path_m"].get<double>(), 3.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace mlo

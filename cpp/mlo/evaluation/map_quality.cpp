@@ -8,34 +8,17 @@
 #include <vector>
 
 #include <Eigen/Eigenvalues>
-#include <nanoflann.hpp>
 
 #include "mlo/core/parallel.hpp"
+#include "mlo/evaluation/point_tree.hpp"
 
 namespace mlo {
 namespace {
 
-// Points as nanoflann wants to see them.
-struct Cloud {
-  std::vector<Eigen::Vector3f> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<Eigen::Index>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
-
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::size_t>;
-
 // Result set of a radius search that sums up what it is given instead of storing it.
 class MomentSum {
  public:
-  MomentSum(const Cloud& cloud, const Eigen::Vector3f& origin, float radius_squared)
+  MomentSum(const PointCloud& cloud, const Eigen::Vector3f& origin, float radius_squared)
       : cloud_(cloud), origin_(origin), radius_squared_(radius_squared) {}
 
   // The interface that nanoflann calls.
@@ -57,7 +40,7 @@ class MomentSum {
   }
 
  private:
-  const Cloud& cloud_;
+  const PointCloud& cloud_;
   Eigen::Vector3f origin_;
   float radius_squared_;
   std::size_t count_ = 0;
@@ -90,7 +73,7 @@ struct LocalShape {
   double thickness_m = kNone;  // only of planar neighbourhoods
 };
 
-LocalShape shape_at(const Tree& tree, const Cloud& cloud, std::size_t index,
+LocalShape shape_at(const PointTree& tree, const PointCloud& cloud, std::size_t index,
                     const MapQualityOptions& options) {
   const Eigen::Vector3f& center = cloud.points[index];
   MomentSum sum(cloud, center, static_cast<float>(options.radius_m * options.radius_m));
@@ -123,14 +106,14 @@ double median(std::vector<double> values) {
 }  // namespace
 
 MapQuality map_quality(std::span<const Eigen::Vector3f> points, const MapQualityOptions& options) {
-  Cloud cloud;
+  PointCloud cloud;
   std::copy_if(points.begin(), points.end(), std::back_inserter(cloud.points),
                [](const Eigen::Vector3f& point) { return point.allFinite(); });
   MapQuality quality;
   quality.num_points = cloud.points.size();
   if (cloud.points.empty()) return quality;
 
-  const Tree tree(3, cloud);
+  const PointTree tree(3, cloud);
   const std::vector<std::size_t> samples = sample_indices(cloud.points.size(), options.max_samples);
   std::vector<LocalShape> shapes(samples.size());
   parallel_for_each_index(

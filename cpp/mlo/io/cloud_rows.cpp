@@ -170,4 +170,22 @@ void TextCursor::expect_rows(std::size_t rows, const std::vector<Column>&) const
                fmt::format("announces {} rows, but only {} bytes follow", rows, bytes_.size() - offset_));
 }
 
+void read_cloud_rows(const std::filesystem::path& path, const RowSink& sink) {
+  const std::string extension = to_lower(path.extension().string());
+  if (extension != ".pcd" && extension != ".ply") {
+    throw InputError(fmt::format("{}: is no .pcd or .ply file; convert it to one of them", path.string()));
+  }
+  const std::string bytes = read_file(path);
+  if (extension == ".pcd") {
+    read_pcd_rows(path, bytes, sink);
+  } else {
+    read_ply_rows(path, bytes, sink);
+  }
+}
+
+Eigen::Vector3f position_of(const RoleValues& row) {
+  return {static_cast<float>(row[index_of(Role::x)]), static_cast<float>(row[index_of(Role::y)]),
+          static_cast<float>(row[index_of(Role::z)])};
+}
+
 }  // namespace mlo

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "mlo/io/scalar.hpp"
 
 // What PCD and PLY have in common: rows of named numbers, as text or bytes. Internal to io.
@@ -131,5 +133,10 @@ void read_points(Cursor& cursor, std::vector<Column> columns, std::size_t rows, 
 /// Reading of the two formats; every point goes to the sink. @throws InputError with file, line or byte
 void read_pcd_rows(const std::filesystem::path& path, std::string_view bytes, const RowSink& sink);
 void read_ply_rows(const std::filesystem::path& path, std::string_view bytes, const RowSink& sink);
+/// The one that the file's name asks for.
+void read_cloud_rows(const std::filesystem::path& path, const RowSink& sink);
+
+/// x, y, z of a row.
+Eigen::Vector3f position_of(const RoleValues& row);
 
 }  // namespace mlo

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
-#include "mlo/io/kitti_box.hpp"
 #include "mlo/io/text.hpp"
 #include "mlo/io/text_records.hpp"
 
@@ -86,6 +85,10 @@ std::map<std::string, std::vector<ObjectRecord>> read_kitti_sequences(const std:
         fmt::format("{}: holds no .txt files; expected one KITTI tracking file per sequence", path.string()));
   }
   return sequences;
+}
+
+KittiBox kitti_box_of(const ObjectRecord& record) {
+  return box_in_camera(record.box, T_camera0_level());
 }
 
 }  // namespace mlo

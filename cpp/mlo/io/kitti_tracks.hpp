@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mlo/core/object_record.hpp"
+#include "mlo/io/kitti_box.hpp"
 
 namespace mlo {
 
@@ -18,5 +19,8 @@ std::vector<ObjectRecord> read_kitti_tracks(const std::filesystem::path& file);
 /// Reads all .txt files of a folder, by sequence (the file's name without .txt); or a single file.
 /// @throws InputError if there are none, or as read_kitti_tracks
 std::map<std::string, std::vector<ObjectRecord>> read_kitti_sequences(const std::filesystem::path& path);
+
+/// The record's 3D box as KITTI's files have it: the same numbers.
+KittiBox kitti_box_of(const ObjectRecord& record);
 
 }  // namespace mlo

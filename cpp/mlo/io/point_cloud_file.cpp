@@ -11,28 +11,9 @@
 #include "mlo/io/cloud_rows.hpp"
 #include "mlo/io/lzf.hpp"
 #include "mlo/io/scalar.hpp"
-#include "mlo/io/text.hpp"
 
 namespace mlo {
 namespace {
-
-void read_rows_of(const std::filesystem::path& path, const RowSink& sink) {
-  const std::string extension = to_lower(path.extension().string());
-  if (extension != ".pcd" && extension != ".ply") {
-    throw InputError(fmt::format("{}: is no .pcd or .ply file; convert it to one of them", path.string()));
-  }
-  const std::string bytes = read_file(path);
-  if (extension == ".pcd") {
-    read_pcd_rows(path, bytes, sink);
-  } else {
-    read_ply_rows(path, bytes, sink);
-  }
-}
-
-Eigen::Vector3f position(const RoleValues& row) {
-  return {static_cast<float>(row[index_of(Role::x)]), static_cast<float>(row[index_of(Role::y)]),
-          static_cast<float>(row[index_of(Role::z)])};
-}
 
 float finite_or_zero(double value) {
   return std::isfinite(value) ? static_cast<float>(value) : 0.0F;
@@ -119,7 +100,7 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path) {
   };
   const auto add = [&cloud](const RoleValues& row) {
     Point point;
-    point.p_lidar = position(row);
+    point.p_lidar = position_of(row);
     const double time = row[index_of(Role::time)];
     if (!point.p_lidar.allFinite() || !std::isfinite(time)) {
       ++cloud.invalid_points;
@@ -130,7 +111,7 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path) {
     cloud.points.push_back(point);
     if (cloud.has_time) cloud.times_s.push_back(time);
   };
-  read_rows_of(path, {begin, add});
+  read_cloud_rows(path, {begin, add});
   if (!cloud.has_time) return cloud;
   cloud.time_unit_s = find_time_unit_s(cloud.times_s, integer_time);
   for (double& time : cloud.times_s) time *= cloud.time_unit_s;
@@ -141,11 +122,11 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   std::vector<MapPoint> points;
   const auto begin = [&points](const CloudFields&, std::size_t rows) { points.reserve(rows); };
   const auto add = [&points](const RoleValues& row) {
-    const MapPoint point{position(row), finite_or_zero(row[index_of(Role::intensity)]),
+    const MapPoint point{position_of(row), finite_or_zero(row[index_of(Role::intensity)]),
                          map_label(row[index_of(Role::label)])};
     if (point.p_map.allFinite()) points.push_back(point);
   };
-  read_rows_of(path, {begin, add});
+  read_cloud_rows(path, {begin, add});
   return points;
 }
 
