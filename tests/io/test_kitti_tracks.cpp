@@ -81,5 +81,27 @@ TEST(KittiTracks, ProblemsNameFileAndLine) {
   EXPECT_THROW(read_kitti_sequences(folder.path() / "empty"), InputError);
 }
 
+TEST(KittiTracks, WritesWhatItReads) {
+  const TempFolder folder;
+  auto records = read_kitti_tracks(folder.write("a.txt", std::string(kCar) + " 0.75\n"));
+  records.push_back(records.front());
+  records.back().frame = 4;
+  records.back().box.yaw_rad = 2.5;
+  write_kitti_tracks(folder.path() / "b.txt", records);
+  const auto back = read_kitti_tracks(folder.path() / "b.txt");
+  ASSERT_EQ(back.size(), 2U);
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    EXPECT_EQ(back[i].frame, records[i].frame);
+    EXPECT_EQ(back[i].track_id, records[i].track_id);
+    EXPECT_EQ(back[i].type, "car");
+    EXPECT_NEAR(back[i].score, 0.75, 1e-6);
+    EXPECT_NEAR(back[i].image_box.right_px, records[i].image_box.right_px, 1e-3);
+    EXPECT_TRUE(back[i].box.center_lidar_m.isApprox(records[i].box.center_lidar_m, 1e-5));
+    EXPECT_NEAR(back[i].box.yaw_rad, records[i].box.yaw_rad, 1e-4);
+  }
+  write_kitti_tracks(folder.path() / "none.txt", {});
+  EXPECT_TRUE(read_kitti_tracks(folder.path() / "none.txt").empty());
+}
+
 }  // namespace
 }  // namespace mlo

@@ -1,12 +1,15 @@
 #include "mlo/io/kitti_tracks.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
+#include "mlo/io/atomic_file.hpp"
+#include "mlo/io/kitti_box.hpp"
 #include "mlo/io/text.hpp"
 #include "mlo/io/text_records.hpp"
 
@@ -17,9 +20,23 @@ namespace {
 constexpr std::size_t kLabelNumbers = 16;
 constexpr std::size_t kResultNumbers = 17;
 
-// A lidar's axes (x ahead, y left, z up) about the camera's centre.
-SE3 T_camera0_level() {
-  return {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Eigen::Vector3d::Zero()};
+// "car" to "Car", "dontcare" to "DontCare".
+std::string kitti_spelling(std::string type) {
+  if (type == "dontcare") return "DontCare";
+  if (!type.empty()) type.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(type.front())));
+  return type;
+}
+
+std::string kitti_row(const ObjectRecord& record) {
+  const KittiBox box = kitti_box_of(record);
+  const Eigen::Vector3d& p = box.bottom_camera0_m;
+  const Box2d& image = record.image_box;
+  return fmt::format(
+      "{} {} {} {} {} {:.6f} {:.4f} {:.4f} {:.4f} {:.4f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.6f} "
+      "{:.6f}\n",
+      record.frame, record.track_id, kitti_spelling(record.type), record.truncation, record.occlusion,
+      observation_angle_rad(box), image.left_px, image.top_px, image.right_px, image.bottom_px, box.height_m,
+      box.width_m, box.length_m, p.x(), p.y(), p.z(), box.rotation_y_rad, record.score);
 }
 
 ObjectRecord object_record(const std::string& line, const std::string& where) {
@@ -60,6 +77,10 @@ ObjectRecord object_record(const std::string& line, const std::string& where) {
 
 }  // namespace
 
+SE3 T_camera0_level() {
+  return {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Eigen::Vector3d::Zero()};
+}
+
 std::vector<ObjectRecord> read_kitti_tracks(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   std::vector<ObjectRecord> records;
@@ -89,6 +110,12 @@ std::map<std::string, std::vector<ObjectRecord>> read_kitti_sequences(const std:
 
 KittiBox kitti_box_of(const ObjectRecord& record) {
   return box_in_camera(record.box, T_camera0_level());
+}
+
+void write_kitti_tracks(const std::filesystem::path& file, std::span<const ObjectRecord> records) {
+  std::string text;
+  for (const ObjectRecord& record : records) text += kitti_row(record);
+  write_file_atomically(file, text);
 }
 
 }  // namespace mlo

@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "mlo/core/object_record.hpp"
+#include "mlo/core/se3.hpp"
 #include "mlo/io/kitti_box.hpp"
 
 namespace mlo {
@@ -22,5 +24,13 @@ std::map<std::string, std::vector<ObjectRecord>> read_kitti_sequences(const std:
 
 /// The record's 3D box as KITTI's files have it: the same numbers.
 KittiBox kitti_box_of(const ObjectRecord& record);
+
+/// Turns a lidar's axes (x ahead, y left, z up) about the camera's centre into the camera's: the frame of
+/// ObjectRecord::box.
+SE3 T_camera0_level();
+
+/// Writes a result file (18 fields), in the order given; types as KITTI spells them.
+/// @throws InputError when the file cannot be written
+void write_kitti_tracks(const std::filesystem::path& file, std::span<const ObjectRecord> records);
 
 }  // namespace mlo

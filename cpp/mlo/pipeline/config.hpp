@@ -9,6 +9,7 @@
 #include "mlo/mapping/config.hpp"
 #include "mlo/odometry/config.hpp"
 #include "mlo/perception/config.hpp"
+#include "mlo/tracking/config.hpp"
 
 namespace mlo {
 
@@ -38,7 +39,8 @@ struct MotionConfig {
   template <class Visitor>
   void fields(Visitor& visit) {
     visit("reference_fraction", reference_fraction, between(0.0, 1.0),
-          "points are brought to this moment of their sweep: 1, its end, as in the paper; the middle halves the "
+          "points are brought to this moment of their sweep: 1, its end, as in the paper; the middle halves "
+          "the "
           "error of a wrong velocity");
     visit("constant_motion_within_m", constant_motion_within_m, between(0.0, 100.0),
           "map refinement starts from constant motion while odometry differs from it by less than this, else "
@@ -56,6 +58,7 @@ struct PipelineConfig {
   PerceptionConfig perception;
   OdometryConfig odometry;
   MappingConfig mapping;
+  TrackingConfig tracking;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -65,6 +68,7 @@ struct PipelineConfig {
     visit.group("perception", perception, "Ground, features and objects of one scan (paper, section III-B).");
     visit.group("odometry", odometry, "Scan-to-scan ego odometry (paper, section III-C-1).");
     visit.group("mapping", mapping, "Map refinement and the static map (paper, section III-D).");
+    visit.group("tracking", tracking, "Multi-object tracking (paper, section III-C-2).");
   }
 };
 

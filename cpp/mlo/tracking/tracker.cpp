@@ -1,0 +1,208 @@
+#include "mlo/tracking/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mlo/tracking/ego_from_boxes.hpp"
+#include "mlo/tracking/visibility.hpp"
+
+namespace mlo {
+namespace {
+
+bool is_usable(const Detection& detection) {
+  const Box3d& box = detection.box;
+  return box.center_lidar_m.allFinite() && box.size_lwh_m.allFinite() &&
+         (box.size_lwh_m.array() > 0.0).all() && std::isfinite(box.yaw_rad) &&
+         std::isfinite(detection.confidence);
+}
+
+bool is_wheeled(ObjectClass object_class) {
+  return object_class != ObjectClass::pedestrian && object_class != ObjectClass::other;
+}
+
+double field_of_view_rad(const LifecycleConfig& config) {
+  return config.field_of_view_deg * std::numbers::pi / 180.0;
+}
+
+}  // namespace
+
+std::vector<Tracker::Observation> Tracker::observe(std::span<const Detection> detections,
+                                                   const SE3& T_odom_lidar) const {
+  std::vector<Observation> observations;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    if (!is_usable(detections[i])) continue;
+    observations.push_back({.measurement = measure(detections[i], T_odom_lidar, config_.box_noise),
+                            .object_class = detections[i].object_class,
+                            .logit = confidence_logit(detections[i].confidence),
+                            .range_m = detections[i].box.center_lidar_m.norm(),
+                            .index = i});
+  }
+  return observations;
+}
+
+std::vector<TrackedObject> Tracker::process(std::span<const Detection> detections, const SE3& T_odom_lidar,
+                                            double dt_s) {
+  T_odom_lidar_ = T_odom_lidar;
+  for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
+  return commit(observe(detections, T_odom_lidar));
+}
+
+std::vector<TrackedObject> Tracker::process(std::span<const Detection> detections, double dt_s) {
+  for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
+  const SE3 T_odom_lidar = estimate_pose(detections);
+  if (started_) last_increment_ = T_odom_lidar_.inverse() * T_odom_lidar;
+  T_odom_lidar_ = T_odom_lidar;
+  started_ = true;
+  return commit(observe(detections, T_odom_lidar));
+}
+
+SE3 Tracker::estimate_pose(std::span<const Detection> detections) const {
+  constexpr int kRounds = 2;  // the second associates with the pose that the first found
+  const SE3 predicted = T_odom_lidar_ * last_increment_;
+  SE3 T_odom_lidar = predicted;
+  std::vector<AssociationTrack> tracks;
+  for (const Track& track : tracks_) tracks.push_back({&track.filter, track.object_class});
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Observation> observations = observe(detections, T_odom_lidar);
+    std::vector<AssociationDetection> candidates;
+    for (const Observation& o : observations) candidates.push_back({&o.measurement, o.object_class});
+    AssociationConfig wide = config_.association;
+    wide.gate *= 2.0;
+    std::vector<BoxPair> pairs;
+    for (const Assignment& pair : associate(tracks, candidates, wide)) {
+      const ObjectFilter& filter = *tracks[static_cast<std::size_t>(pair.row)].filter;
+      const Observation& o = observations[static_cast<std::size_t>(pair.col)];
+      const double variance =
+          0.5 * filter.planar_covariance().topLeftCorner<2, 2>().trace() +
+          0.5 * (std::pow(o.measurement.along_sd_m, 2) + std::pow(o.measurement.across_sd_m, 2));
+      pairs.push_back({.measured_lidar_m = detections[o.index].box.center_lidar_m.head<2>(),
+                       .predicted_odom_m = filter.box().center_odom_m.head<2>(),
+                       .sd_m = std::sqrt(variance)});
+    }
+    T_odom_lidar = ego_from_boxes(pairs, predicted, {});
+  }
+  return T_odom_lidar;
+}
+
+std::vector<TrackedObject> Tracker::commit(std::vector<Observation> observations) {
+  for (Track& track : tracks_) {
+    track.detection.reset();
+    ++track.age;
+    ++track.misses;
+  }
+  associate_and_update(observations, true);
+  associate_and_update(observations, false);
+  miss_unmatched();
+  begin_tracks(std::move(observations));
+  end_tracks();
+  std::vector<TrackedObject> objects;
+  for (const Track& track : tracks_) objects.push_back(describe(track));
+  return objects;
+}
+
+void Tracker::associate_and_update(std::vector<Observation>& observations, bool high_confidence) {
+  std::vector<Track*> free_tracks;
+  std::vector<AssociationTrack> rows;
+  for (Track& track : tracks_) {
+    if (track.detection) continue;
+    free_tracks.push_back(&track);
+    rows.push_back({&track.filter, track.object_class});
+  }
+  std::vector<Observation*> free_observations;
+  std::vector<AssociationDetection> cols;
+  for (Observation& o : observations) {
+    if ((o.logit >= config_.association.high_confidence_logit) != high_confidence) continue;
+    free_observations.push_back(&o);
+    cols.push_back({&o.measurement, o.object_class});
+  }
+  for (const Assignment& pair : associate(rows, cols, config_.association)) {
+    Track& track = *free_tracks[static_cast<std::size_t>(pair.row)];
+    Observation& o = *free_observations[static_cast<std::size_t>(pair.col)];
+    o.taken = true;
+    track.filter.update(o.measurement, config_.motion);
+    track.detection = o.index;
+    track.misses = 0;
+    ++track.hits;
+    track.existence += detection_evidence(o.logit, o.range_m, config_.lifecycle);
+  }
+}
+
+void Tracker::miss_unmatched() {
+  std::vector<Box3d> boxes;
+  for (const Track& track : tracks_) boxes.push_back(in_lidar(track.filter.box(), T_odom_lidar_));
+  const std::vector<double> hidden = hidden_shares(boxes);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track& track = tracks_[i];
+    if (!track.detection) {
+      const bool in_view = in_field_of_view(boxes[i], field_of_view_rad(config_.lifecycle));
+      const double visible =
+          (1.0 - hidden[i]) * detectability(boxes[i].center_lidar_m.norm(), config_.lifecycle);
+      track.existence += miss_evidence(in_view ? visible : 0.0, config_.lifecycle);
+    }
+    track.existence = std::min(track.existence, config_.lifecycle.max_existence);
+    track.state = next_state(track.state, {track.existence, track.misses}, config_.lifecycle);
+  }
+}
+
+void Tracker::begin_tracks(std::vector<Observation> observations) {
+  // The surest first: of several boxes around one object it is the one that begins a track.
+  std::stable_sort(observations.begin(), observations.end(),
+                   [](const Observation& a, const Observation& b) { return a.logit > b.logit; });
+  for (const Observation& o : observations) {
+    if (o.taken || o.logit < config_.lifecycle.min_birth_logit) continue;
+    const bool duplicate = std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
+      return track.detection &&
+             footprint_overlap(track.filter.box(), o.measurement.box) > config_.lifecycle.max_overlap;
+    });
+    if (duplicate) continue;
+    Track track{.id = next_id_++,
+                .object_class = o.object_class,
+                .filter = ObjectFilter(o.measurement, is_wheeled(o.object_class), config_.motion),
+                .existence = detection_evidence(o.logit, o.range_m, config_.lifecycle),
+                .detection = o.index};
+    track.state = next_state(track.state, {track.existence, 0}, config_.lifecycle);
+    tracks_.push_back(std::move(track));
+  }
+}
+
+void Tracker::end_tracks() {
+  const auto gives_way = [&](const Track& track) {
+    return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& other) {
+      if (other.id == track.id || !other.detection || track.detection) return false;
+      return footprint_overlap(track.filter.box(), other.filter.box()) > config_.lifecycle.max_overlap;
+    });
+  };
+  for (Track& track : tracks_) {
+    if (gives_way(track)) track.state = TrackState::dead;
+  }
+  std::erase_if(tracks_, [](const Track& track) { return track.state == TrackState::dead; });
+}
+
+TrackedObject Tracker::describe(const Track& track) const {
+  const PlacedBox placed = track.filter.box();
+  TrackedObject object{.id = track.id,
+                       .object_class = track.object_class,
+                       .state = track.state,
+                       .box = in_lidar(placed, T_odom_lidar_),
+                       .T_odom_object = placed.T_odom_object(),
+                       .velocity_odom_mps = track.filter.velocity_mps(),
+                       .turn_rate_radps = track.filter.turn_rate_radps(),
+                       .moving_probability = track.filter.moving_probability(),
+                       .planar_covariance = track.filter.planar_covariance(),
+                       .yaw_covariance = track.filter.yaw_covariance(),
+                       .existence = track.existence,
+                       .age = track.age,
+                       .hits = track.hits,
+                       .misses = track.misses,
+                       .detection = track.detection};
+  const double sd_m = std::sqrt(object.planar_covariance.topLeftCorner<2, 2>().trace());
+  const bool shown_without_detection = sd_m <= config_.lifecycle.max_report_sd_m &&
+                                       in_field_of_view(object.box, field_of_view_rad(config_.lifecycle));
+  object.reported = track.state != TrackState::tentative &&
+                    track.existence >= config_.lifecycle.report_existence &&
+                    (track.detection || shown_without_detection);
+  return object;
+}
+
+}  // namespace mlo

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mlo/core/box.hpp"
+#include "mlo/core/se3.hpp"
+#include "mlo/tracking/association.hpp"
+#include "mlo/tracking/config.hpp"
+#include "mlo/tracking/lifecycle.hpp"
+#include "mlo/tracking/object_filter.hpp"
+#include "mlo/tracking/placed_box.hpp"
+
+namespace mlo {
+
+/// A track as it stands after a scan.
+struct TrackedObject {
+  long id = 0;
+  ObjectClass object_class = ObjectClass::car;
+  TrackState state = TrackState::tentative;
+  bool reported = false;  ///< believed, and known well enough to be shown
+  Box3d box;              ///< in the lidar frame
+  SE3 T_odom_object;
+  Eigen::Vector2d velocity_odom_mps = Eigen::Vector2d::Zero();
+  double turn_rate_radps = 0.0;
+  double moving_probability = 0.5;
+  /// Of [x; y; vx; vy] in the odometry frame, [m] and [m/s].
+  ObjectFilter::Matrix4d planar_covariance = ObjectFilter::Matrix4d::Zero();
+  Eigen::Matrix2d yaw_covariance = Eigen::Matrix2d::Zero();  ///< of [yaw; turn rate], [rad] and [rad/s]
+  double existence = 0.0;                                    ///< log-odds
+  int age = 0;                                               ///< scans since the first detection, with it
+  int hits = 0;
+  int misses = 0;                        ///< in a row
+  std::optional<std::size_t> detection;  ///< index of this scan's detection; nothing when predicted
+};
+
+/// Follows boxes from scan to scan (paper, section III-C-2), on line: the result of a scan depends on it and
+/// earlier ones only.
+class Tracker {
+ public:
+  explicit Tracker(const TrackingConfig& config) : config_(config) {}
+
+  /// @param detections    of one scan, in the lidar frame; boxes that are not finite are left out
+  /// @param T_odom_lidar  pose of the lidar at that scan
+  /// @param dt_s          time since the scan before; scans without detections must be given too
+  /// @return all tracks that live, by id
+  std::vector<TrackedObject> process(std::span<const Detection> detections, const SE3& T_odom_lidar,
+                                     double dt_s);
+
+  /// The same where nothing is known of the lidar's motion: it is estimated from the boxes themselves, of
+  /// which most stand or move along with others (ego_from_boxes.hpp).
+  std::vector<TrackedObject> process(std::span<const Detection> detections, double dt_s);
+
+  /// Pose of the lidar at the last scan, as given or estimated.
+  const SE3& T_odom_lidar() const { return T_odom_lidar_; }
+
+ private:
+  struct Track {
+    long id;
+    ObjectClass object_class;
+    ObjectFilter filter;
+    TrackState state = TrackState::tentative;
+    double existence = 0.0;
+    int age = 1;
+    int hits = 1;
+    int misses = 0;
+    std::optional<std::size_t> detection;
+  };
+
+  /// Detections as the tracks see them; index leads to the span that was given.
+  struct Observation {
+    BoxMeasurement measurement;
+    ObjectClass object_class;
+    double logit;
+    double range_m;
+    std::size_t index;
+    bool taken = false;
+  };
+
+  std::vector<Observation> observe(std::span<const Detection> detections, const SE3& T_odom_lidar) const;
+  SE3 estimate_pose(std::span<const Detection> detections) const;
+  std::vector<TrackedObject> commit(std::vector<Observation> observations);
+  void associate_and_update(std::vector<Observation>& observations, bool high_confidence);
+  void miss_unmatched();
+  void begin_tracks(std::vector<Observation> observations);
+  void end_tracks();
+  TrackedObject describe(const Track& track) const;
+
+  TrackingConfig config_;
+  std::vector<Track> tracks_;
+  SE3 T_odom_lidar_;
+  SE3 last_increment_;
+  bool started_ = false;
+  long next_id_ = 1;
+};
+
+}  // namespace mlo
