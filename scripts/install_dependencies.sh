@@ -12,7 +12,7 @@ build=(g++ cmake ninja-build make git xz-utils
   robin-map-dev libnanoflann-dev libgtest-dev libgmock-dev libembree-dev)
 bench=(libbenchmark-dev)
 develop=(ccache clang-format clang-tidy-16)
-plot=(python3 python3-numpy python3-matplotlib)
+plot=(python3 python3-numpy python3-matplotlib python3-scipy)
 
 wanted=()
 for group in "${@:-build}"; do

@@ -13,6 +13,14 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
+// The map keeps points to 1/65536 of a voxel, 15 micrometres for the largest voxels here.
+constexpr float kResolutionM = 2e-5F;
+constexpr float kResolutionM2 = 2.0F * 1.8F * kResolutionM;  // of squared distances to neighbours in 27 voxels
+
+void expect_point(const Eigen::Vector3f& found, const Eigen::Vector3f& expected) {
+  EXPECT_LT((found - expected).norm(), kResolutionM) << found.transpose() << " is not " << expected.transpose();
+}
+
 Points random_points(std::size_t count, float half_side_m) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(-half_side_m, half_side_m);
@@ -70,8 +78,8 @@ void expect_same_neighbours(const LocalMap& map, const PlainMap& plain, int k) {
     const NearestPoints found = map.nearest(query, k, 100.0F);
     ASSERT_EQ(static_cast<std::size_t>(found.count), std::min(static_cast<std::size_t>(k), expected.size()));
     for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
-      EXPECT_FLOAT_EQ(found.squared_distances_m2[i], expected[i]);
-      EXPECT_FLOAT_EQ((found.points[i] - query).squaredNorm(), found.squared_distances_m2[i]);
+      EXPECT_NEAR(found.squared_distances_m2[i], expected[i], kResolutionM2);
+      EXPECT_NEAR((found.points[i] - query).squaredNorm(), found.squared_distances_m2[i], kResolutionM2);
     }
   }
 }
@@ -111,8 +119,8 @@ TEST(LocalMap, PointsNearerThanTheSpacingAreLeftOut) {
   map.insert(Points{{0.1F, 0.1F, 0.1F}, {0.25F, 0.1F, 0.1F}, {0.35F, 0.1F, 0.1F}});
   const NearestPoints found = map.nearest({0.0F, 0.1F, 0.1F}, 5, 10.0F);
   ASSERT_EQ(found.count, 2);
-  EXPECT_EQ(found.points[0], Eigen::Vector3f(0.1F, 0.1F, 0.1F));
-  EXPECT_EQ(found.points[1], Eigen::Vector3f(0.35F, 0.1F, 0.1F));
+  expect_point(found.points[0], Eigen::Vector3f(0.1F, 0.1F, 0.1F));
+  expect_point(found.points[1], Eigen::Vector3f(0.35F, 0.1F, 0.1F));
 }
 
 TEST(LocalMap, AVoxelHoldsNoMoreThanItsCapacity) {
@@ -135,8 +143,8 @@ TEST(LocalMap, WhatIsFarFromTheRobotIsForgottenWhileItDrives) {
   // The voxel whose storage was used before holds only its own points.
   const NearestPoints found = map.nearest({499.0F, 0.5F, 0.5F}, 20, 1.0F);
   ASSERT_EQ(found.count, 2);
-  EXPECT_EQ(found.points[0], Eigen::Vector3f(499.0F, 0.5F, 0.5F));
-  EXPECT_EQ(found.points[1], Eigen::Vector3f(498.0F, 0.5F, 0.5F));
+  expect_point(found.points[0], Eigen::Vector3f(499.0F, 0.5F, 0.5F));
+  expect_point(found.points[1], Eigen::Vector3f(498.0F, 0.5F, 0.5F));
 }
 
 TEST(LocalMap, EmptyAndClearedMapsFindNothing) {

@@ -51,7 +51,7 @@ struct RefinementConfig {
   int coarse_stride = 4;
   int max_iterations = 15;
   int max_iterations_without_motion = 40;
-  double translation_tolerance_m = 2e-4;
+  double translation_tolerance_m = 1e-3;
   double rotation_tolerance_rad = 2e-5;
   int min_matches = 100;
   double min_curvature = 1e-3;

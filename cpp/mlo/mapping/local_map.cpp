@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace mlo {
 namespace {
 
 // The map is searched for what to forget each time the robot has moved by this share of the radius.
 constexpr double kForgetEvery = 0.05;
+
+constexpr double kStepsPerVoxel = 65536.0;
 
 struct Offset {
   int x, y, z;
@@ -31,64 +34,101 @@ constexpr std::array<Offset, 27> neighbour_offsets() {
 }
 constexpr std::array<Offset, 27> kNeighbours = neighbour_offsets();
 
-// Squared distance along one axis from a query at `fraction` of its voxel to the voxel `step` further.
-float axis_distance2(float fraction, int step) {
-  if (step == 0) return 0.0F;
-  const float d = step > 0 ? 1.0F - fraction : fraction;
-  return d * d;
+// Of these, the centre and the six that share a face with it.
+constexpr std::size_t kAlwaysLoaded = 7;
+
+Eigen::Vector3f in_steps(const Offset& offset) {
+  return Eigen::Vector3i(offset.x, offset.y, offset.z).cast<float>() * static_cast<float>(kStepsPerVoxel);
 }
 
-// Sorts a point in that is among the k nearest so far.
-void keep_nearest(const Eigen::Vector3f& point, float d2, int k, NearestPoints& nearest) {
-  int i = nearest.count < k ? nearest.count++ : k - 1;
-  for (; i > 0 && nearest.squared_distances_m2[static_cast<std::size_t>(i - 1)] > d2; --i) {
-    nearest.points[static_cast<std::size_t>(i)] = nearest.points[static_cast<std::size_t>(i - 1)];
-    nearest.squared_distances_m2[static_cast<std::size_t>(i)] =
-        nearest.squared_distances_m2[static_cast<std::size_t>(i - 1)];
-  }
-  nearest.points[static_cast<std::size_t>(i)] = point;
-  nearest.squared_distances_m2[static_cast<std::size_t>(i)] = d2;
+// From a place, in steps from the middle of a voxel, to the voxel.
+float squared_distance_to_voxel(const Eigen::Vector3f& p) {
+  return (p.array().abs() - static_cast<float>(0.5 * kStepsPerVoxel)).max(0.0F).matrix().squaredNorm();
 }
+
+// The k nearest so far, nearest first, by where to find them.
+struct NearestPlaces {
+  struct Place {
+    float squared_distance;
+    std::uint16_t offset;  // in kNeighbours
+    std::uint16_t point;   // in the voxel
+  };
+
+  explicit NearestPlaces(int k) : max_count(k) {}
+  float worst() const {
+    return count < max_count ? std::numeric_limits<float>::max()
+                             : places[static_cast<std::size_t>(count - 1)].squared_distance;
+  }
+  void add(const Place& place) {
+    if (place.squared_distance >= worst()) return;
+    std::size_t i = static_cast<std::size_t>(count < max_count ? count++ : count - 1);
+    for (; i > 0 && places[i - 1].squared_distance > place.squared_distance; --i) places[i] = places[i - 1];
+    places[i] = place;
+  }
+
+  int max_count;
+  int count = 0;
+  std::array<Place, NearestPoints::kMax> places;
+};
 
 }  // namespace
 
 LocalMap::LocalMap(const LocalMapConfig& config)
-    : config_(config), inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)) {}
+    : config_(config),
+      inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)),
+      step_m_(static_cast<float>(config.voxel_m / kStepsPerVoxel)) {}
+
+Eigen::Vector3f LocalMap::middle(const VoxelKey& key) const {
+  return (Eigen::Vector3i(key.x, key.y, key.z).cast<double>().array() + 0.5).matrix().cast<float>() *
+         static_cast<float>(config_.voxel_m);
+}
 
 void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
-  const auto spacing2 = static_cast<float>(config_.min_spacing_m * config_.min_spacing_m);
-  const auto capacity = static_cast<std::uint32_t>(config_.max_points_per_voxel);
+  const auto spacing2 = static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
   for (const Eigen::Vector3f& p : points_map) {
-    const auto [entry, is_new] = index_.try_emplace(voxel_key(p, inverse_voxel_), 0U);
-    if (is_new) entry.value() = take_voxel();
-    Voxel& home = voxel(entry->second);
-    if (home.count >= capacity) continue;
-    const auto distances2 = home.squared_distances_m2(p);
+    const VoxelKey key = voxel_key(p, inverse_voxel_);
+    std::uint32_t& place = tiles_[Tile::key_of(key)].places[Tile::index_of(key)];
+    if (place == Tile::kNone) place = take_voxel();
+    Voxel& home = voxel(place);
+    if (home.count >= config_.max_points_per_voxel) continue;
+    const Eigen::Vector3f steps = (p - middle(key)) / step_m_;
+    const auto distances2 = home.squared_distances(steps);
     const auto end = distances2.begin() + home.count;
     if (std::any_of(distances2.begin(), end, [&](float d2) { return d2 < spacing2; })) continue;
-    home.push_back(p);
+    home.push_back(steps);
   }
 }
 
-std::array<float, NearestPoints::kMax> LocalMap::Voxel::squared_distances_m2(const Eigen::Vector3f& p) const {
+std::array<float, NearestPoints::kMax> LocalMap::Voxel::squared_distances(const Eigen::Vector3f& p) const {
   std::array<float, NearestPoints::kMax> distances2;
   for (std::size_t i = 0; i < distances2.size(); ++i) {
-    const float dx = x[i] - p.x();
-    const float dy = y[i] - p.y();
-    const float dz = z[i] - p.z();
+    const float dx = static_cast<float>(x[i]) - p.x();
+    const float dy = static_cast<float>(y[i]) - p.y();
+    const float dz = static_cast<float>(z[i]) - p.z();
     distances2[i] = dx * dx + dy * dy + dz * dz;
   }
   return distances2;
 }
 
 void LocalMap::Voxel::push_back(const Eigen::Vector3f& p) {
-  x[count] = p.x();
-  y[count] = p.y();
-  z[count] = p.z();
+  const auto rounded = [](float steps) {
+    constexpr float lowest = std::numeric_limits<std::int16_t>::min();
+    constexpr float highest = std::numeric_limits<std::int16_t>::max();
+    return static_cast<std::int16_t>(std::lround(std::clamp(steps, lowest, highest)));
+  };
+  x[count] = rounded(p.x());
+  y[count] = rounded(p.y());
+  z[count] = rounded(p.z());
   ++count;
 }
 
+Eigen::Vector3f LocalMap::Voxel::point(int i) const {
+  const auto k = static_cast<std::size_t>(i);
+  return Eigen::Matrix<std::int16_t, 3, 1>(x[k], y[k], z[k]).cast<float>();
+}
+
 std::uint32_t LocalMap::take_voxel() {
+  ++num_voxels_;
   if (!free_.empty()) {
     const std::uint32_t place = free_.back();
     free_.pop_back();
@@ -104,52 +144,110 @@ void LocalMap::forget_beyond_radius(const Eigen::Vector3f& center_map) {
   last_center_map_ = center_map;
   const VoxelKey center = voxel_key(center_map, inverse_voxel_);
   const double radius_voxels = config_.radius_m / config_.voxel_m;
-  for (auto it = index_.begin(); it != index_.end();) {
-    // By the keys alone: the points lie elsewhere in memory.
-    const VoxelKey& key = it->first;
-    const Eigen::Vector3d steps(key.x - center.x, key.y - center.y, key.z - center.z);
-    if (steps.squaredNorm() <= radius_voxels * radius_voxels) {
-      ++it;
-      continue;
-    }
-    voxel(it->second).count = 0;
-    free_.push_back(it->second);
-    it = index_.erase(it);
+  for (auto it = tiles_.begin(); it != tiles_.end();) {
+    const bool is_empty = forget_beyond(it->first, it.value(), center, radius_voxels);
+    it = is_empty ? tiles_.erase(it) : std::next(it);
   }
 }
 
-NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const {
-  NearestPoints nearest;
-  const VoxelKey key = voxel_key(query_map, inverse_voxel_);
-  const Eigen::Vector3f scaled = query_map * inverse_voxel_;
-  const Eigen::Vector3f fraction = scaled - scaled.array().floor().matrix();
-  const auto voxel2 = static_cast<float>(config_.voxel_m * config_.voxel_m);
-  const float gate2 = gate_m * gate_m;
-  for (const Offset& step : kNeighbours) {
-    const float voxel_d2 = voxel2 * (axis_distance2(fraction.x(), step.x) +
-                                     axis_distance2(fraction.y(), step.y) +
-                                     axis_distance2(fraction.z(), step.z));
-    const float worst = nearest.count == k ? nearest.squared_distances_m2[static_cast<std::size_t>(k - 1)]
-                                           : std::numeric_limits<float>::max();
-    if (voxel_d2 >= worst) continue;
-    const auto found = index_.find({key.x + step.x, key.y + step.y, key.z + step.z});
-    if (found == index_.end()) continue;
-    const Voxel& near = voxel(found->second);
-    const auto distances2 = near.squared_distances_m2(query_map);
-    for (std::uint32_t i = 0; i < near.count; ++i) {
-      if (nearest.count == k && distances2[i] >= nearest.squared_distances_m2[static_cast<std::size_t>(k - 1)]) {
-        continue;
+// By the keys alone: the points lie elsewhere in memory. True when nothing is left of the tile.
+bool LocalMap::forget_beyond(const VoxelKey& tile_key, Tile& tile, const VoxelKey& center,
+                             double radius_voxels) {
+  bool is_empty = true;
+  for (int x = 0; x < Tile::kSide; ++x) {
+    for (int y = 0; y < Tile::kSide; ++y) {
+      for (int z = 0; z < Tile::kSide; ++z) {
+        const VoxelKey key{tile_key.x * Tile::kSide + x, tile_key.y * Tile::kSide + y,
+                           tile_key.z * Tile::kSide + z};
+        std::uint32_t& place = tile.places[Tile::index_of(key)];
+        if (place == Tile::kNone) continue;
+        const Eigen::Vector3d steps(key.x - center.x, key.y - center.y, key.z - center.z);
+        if (steps.squaredNorm() <= radius_voxels * radius_voxels) {
+          is_empty = false;
+          continue;
+        }
+        voxel(place).count = 0;
+        free_.push_back(place);
+        place = Tile::kNone;
+        --num_voxels_;
       }
-      keep_nearest(near.point(i), distances2[i], k, nearest);
     }
   }
-  if (nearest.count > 0 && nearest.squared_distances_m2[0] > gate2) nearest.count = 0;
-  return nearest;
+  return is_empty;
+}
+
+// The voxels around a place, with the tiles that were already looked up.
+class LocalMap::Neighbourhood {
+ public:
+  Neighbourhood(const LocalMap& map, const VoxelKey& center)
+      : map_(map), center_(center), center_tile_(Tile::key_of(center)) {}
+
+  /// The voxel some steps (-1, 0 or 1 along each axis) from the centre, if it exists.
+  const Voxel* find(const Offset& step) {
+    const VoxelKey key{center_.x + step.x, center_.y + step.y, center_.z + step.z};
+    const Tile* tile = find_tile(Tile::key_of(key));
+    if (tile == nullptr) return nullptr;
+    const std::uint32_t place = tile->places[Tile::index_of(key)];
+    return place == Tile::kNone ? nullptr : &map_.voxel(place);
+  }
+
+ private:
+  const Tile* find_tile(const VoxelKey& key) {
+    const int index = ((key.x - center_tile_.x + 1) * 3 + (key.y - center_tile_.y + 1)) * 3 +
+                      (key.z - center_tile_.z + 1);
+    const auto bit = std::uint32_t{1} << index;
+    const Tile*& tile = tiles_[static_cast<std::size_t>(index)];
+    if ((known_ & bit) == 0) {
+      known_ |= bit;
+      const auto found = map_.tiles_.find(key);
+      tile = found == map_.tiles_.end() ? nullptr : &found->second;
+    }
+    return tile;
+  }
+
+  const LocalMap& map_;
+  VoxelKey center_;
+  VoxelKey center_tile_;
+  std::uint32_t known_ = 0;  // a bit for each of tiles_
+  std::array<const Tile*, 27> tiles_;
+};
+
+NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const {
+  const VoxelKey key = voxel_key(query_map, inverse_voxel_);
+  const Eigen::Vector3f query = (query_map - middle(key)) / step_m_;
+  Neighbourhood around(*this, key);
+  NearestPlaces nearest(k);
+  std::array<const Voxel*, kNeighbours.size()> voxels;
+  for (std::size_t n = 0; n < kAlwaysLoaded; ++n) {
+    voxels[n] = around.find(kNeighbours[n]);
+    if (voxels[n] != nullptr) voxels[n]->prefetch();
+  }
+  for (std::uint16_t n = 0; n < kNeighbours.size(); ++n) {
+    const Eigen::Vector3f from_middle = query - in_steps(kNeighbours[n]);
+    if (squared_distance_to_voxel(from_middle) >= nearest.worst()) continue;
+    if (n >= kAlwaysLoaded) voxels[n] = around.find(kNeighbours[n]);
+    if (voxels[n] == nullptr) continue;
+    const auto distances2 = voxels[n]->squared_distances(from_middle);
+    for (std::uint16_t i = 0; i < voxels[n]->count; ++i) nearest.add({distances2[i], n, i});
+  }
+
+  NearestPoints result;
+  const float gate = gate_m / step_m_;
+  if (nearest.count == 0 || nearest.places[0].squared_distance > gate * gate) return result;
+  result.count = nearest.count;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(result.count); ++i) {
+    const NearestPlaces::Place& place = nearest.places[i];
+    const Eigen::Vector3f steps = in_steps(kNeighbours[place.offset]) + voxels[place.offset]->point(place.point);
+    result.points[i] = middle(key) + steps * step_m_;
+    result.squared_distances_m2[i] = place.squared_distance * step_m_ * step_m_;
+  }
+  return result;
 }
 
 void LocalMap::clear() {
-  index_.clear();
+  tiles_.clear();
   blocks_.clear();
+  num_voxels_ = 0;
   num_taken_ = 0;
   free_.clear();
   last_center_map_.setZero();

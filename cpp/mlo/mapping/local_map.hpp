@@ -21,7 +21,8 @@ struct NearestPoints {
   int count = 0;
 };
 
-/// Points around the robot in a voxel hash; memory is bounded by forget_beyond_radius().
+/// Points around the robot in a voxel hash, each to 1/65536 of a voxel; memory is bounded by
+/// forget_beyond_radius().
 class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config);
@@ -38,23 +39,48 @@ class LocalMap {
   /// @param k  in [1, NearestPoints::kMax]
   NearestPoints nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const;
 
-  bool empty() const { return index_.empty(); }
-  std::size_t num_voxels() const { return index_.size(); }
+  bool empty() const { return num_voxels_ == 0; }
+  std::size_t num_voxels() const { return num_voxels_; }
   void clear();
 
  private:
-  // Coordinates apart, so that the distances to all points of a voxel are computed side by side.
-  struct Voxel {
-    std::array<float, NearestPoints::kMax> x{};
-    std::array<float, NearestPoints::kMax> y{};
-    std::array<float, NearestPoints::kMax> z{};
-    std::uint32_t count = 0;
+  // Two cache lines, as a search is bound by memory: coordinates in 1/65536 of the voxel's side from its middle.
+  // They are apart, so that the distances to all points are computed side by side.
+  struct alignas(64) Voxel {
+    std::array<std::int16_t, NearestPoints::kMax> x;
+    std::array<std::int16_t, NearestPoints::kMax> y;
+    std::array<std::int16_t, NearestPoints::kMax> z;
+    std::uint8_t count = 0;
 
-    /// From a place to each point; what is beyond count means nothing.
-    std::array<float, NearestPoints::kMax> squared_distances_m2(const Eigen::Vector3f& p) const;
+    /// From a place to each point, both in steps from the voxel's middle; what is beyond count means nothing.
+    std::array<float, NearestPoints::kMax> squared_distances(const Eigen::Vector3f& p) const;
     void push_back(const Eigen::Vector3f& p);
-    Eigen::Vector3f point(std::uint32_t i) const { return {x[i], y[i], z[i]}; }
+    Eigen::Vector3f point(int i) const;
+    void prefetch() const {
+      __builtin_prefetch(&x);
+      __builtin_prefetch(&count);
+    }
   };
+
+  // 4 x 4 x 4 voxels. A query looks most of its 27 voxels up in one or two tiles, not in the hash table.
+  struct Tile {
+    static constexpr int kBits = 2;
+    static constexpr int kSide = 1 << kBits;
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+    Tile() { places.fill(kNone); }
+    static VoxelKey key_of(const VoxelKey& voxel) {
+      return {voxel.x >> kBits, voxel.y >> kBits, voxel.z >> kBits};
+    }
+    static std::size_t index_of(const VoxelKey& voxel) {
+      constexpr int mask = kSide - 1;
+      const int index = ((((voxel.x & mask) << kBits) | (voxel.y & mask)) << kBits) | (voxel.z & mask);
+      return static_cast<std::size_t>(index);
+    }
+
+    std::array<std::uint32_t, std::size_t{kSide} * kSide * kSide> places;  // in the blocks
+  };
+  class Neighbourhood;
 
   // Voxels live in blocks, so that growing never moves them: no scan pays for copying the map.
   static constexpr std::uint32_t kBlockBits = 10;
@@ -63,11 +89,15 @@ class LocalMap {
     return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)];
   }
   std::uint32_t take_voxel();
+  Eigen::Vector3f middle(const VoxelKey& key) const;
+  bool forget_beyond(const VoxelKey& tile_key, Tile& tile, const VoxelKey& center, double radius_voxels);
 
   LocalMapConfig config_;
   float inverse_voxel_;
-  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index_;  // key to place in the blocks
+  float step_m_;  // of the coordinates in a voxel
+  tsl::robin_map<VoxelKey, Tile, VoxelKeyHash> tiles_;
   std::vector<std::vector<Voxel>> blocks_;
+  std::size_t num_voxels_ = 0;
   std::uint32_t num_taken_ = 0;  // places that were ever taken; some of them are free again
   std::vector<std::uint32_t> free_;
   Eigen::Vector3f last_center_map_ = Eigen::Vector3f::Zero();
