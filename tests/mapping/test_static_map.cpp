@@ -32,8 +32,9 @@ TEST(StaticMap, LabelsPointsAndLeavesObjectsOut) {
   map.insert(seen, SweepMotion::none(), SE3());
   std::vector<std::pair<float, MapLabel>> found;  // the order is the map's own
   for (const MapPoint& point : map.points()) found.emplace_back(point.p_map.x(), point.label);
-  EXPECT_THAT(found, testing::UnorderedElementsAre(std::pair(1.0F, MapLabel::edge), std::pair(2.0F, MapLabel::ground),
-                                                   std::pair(3.0F, MapLabel::surface)));
+  EXPECT_THAT(
+      found, testing::UnorderedElementsAre(std::pair(1.0F, MapLabel::edge), std::pair(2.0F, MapLabel::ground),
+                                           std::pair(3.0F, MapLabel::surface)));
 }
 
 TEST(StaticMap, KeepsOnePointPerVoxelOverAllScans) {
@@ -74,6 +75,67 @@ TEST(StaticMap, PlacesPointsByTheirTimeAndThePose) {
 TEST(StaticMap, AnEmptyPerceptAddsNothing) {
   StaticMap map({});
   map.insert(Percept{}, SweepMotion::none(), SE3());
+  EXPECT_TRUE(map.points().empty());
+}
+
+/// Rays in a fan ahead that end on a wall across at this distance, a ray each 0.2 degrees and 16 scan lines.
+std::vector<Point> wall_ahead(float distance_m) {
+  std::vector<Point> points;
+  for (int ring = 0; ring < 16; ++ring) {
+    for (int step = -100; step <= 100; ++step) {
+      Point point;
+      const auto angle = static_cast<float>(step) * 0.0035F;
+      point.p_lidar = {distance_m, distance_m * std::tan(angle),
+                       distance_m * (0.1F - 0.02F * static_cast<float>(ring))};
+      point.ring = static_cast<std::uint16_t>(ring);
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+TEST(StaticMap, WhatLaterScansSeeThroughIsLeftOut) {
+  Percept seen;
+  seen.surface.candidates = {at(10.0F, 0.1F, 0.1F), at(20.0F, 0.1F, 0.1F)};
+  StaticMap map({.free_space_hit_votes = 1.0, .free_space_max_votes = 3.0});
+  map.insert(seen, SweepMotion::none(), SE3());
+  map.observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), SE3());
+  ASSERT_EQ(map.points().size(), 1U);
+  EXPECT_EQ(map.points()[0].p_map.x(), 20.0F);
+
+  // When something stands there again, for longer than it was free, it is back.
+  for (int i = 0; i < 2; ++i) map.observe(RangeImage(wall_ahead(10.0F)), SweepMotion::none(), SE3());
+  EXPECT_EQ(map.points().size(), 2U) << "what the nearer wall hides stays";
+  for (int i = 0; i < 20; ++i) map.observe(RangeImage(wall_ahead(10.0F)), SweepMotion::none(), SE3());
+  for (int i = 0; i < 4; ++i) map.observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), SE3());
+  EXPECT_EQ(map.points().size(), 1U) << "no more than max_votes speak for it";
+}
+
+TEST(StaticMap, WhatIsOutOfReachIsNotVotedOn) {
+  Percept seen;
+  seen.surface.candidates = {at(10.0F, 0.1F, 0.1F)};
+  StaticMap map({.free_space_range_m = 5.0});
+  map.insert(seen, SweepMotion::none(), SE3());
+  for (int i = 0; i < 5; ++i) map.observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), SE3());
+  EXPECT_EQ(map.points().size(), 1U);
+}
+
+TEST(StaticMap, LooksFromWhereTheLidarWasAtThatTimeOfTheSweep) {
+  // The lidar turned by a tenth of a radian in the sweep; the point was seen at its end, straight ahead.
+  Percept seen;
+  FeaturePoint late = at(10.0F, 0.0F, 0.1F);
+  late.sweep_fraction = 1.0F;
+  seen.surface.candidates = {late};
+  std::vector<Point> scan = wall_ahead(20.0F);
+  for (Point& point : scan) {
+    point.sweep_fraction = 1.0F;
+    // Where the point lies at the reference time something near hides it.
+    if (point.p_lidar.y() > 0.5F) point.p_lidar *= 0.25F;
+  }
+  const SweepMotion motion(SE3(so3_exp({0.0, 0.0, 0.1}), Eigen::Vector3d::Zero()), 0.5);
+  StaticMap map({});
+  map.insert(seen, motion, SE3());
+  map.observe(RangeImage(scan), motion, SE3());
   EXPECT_TRUE(map.points().empty());
 }
 

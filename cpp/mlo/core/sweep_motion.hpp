@@ -36,19 +36,28 @@ class SweepMotion {
     return SE3::exp((sweep_fraction - reference_fraction_) * xi_);
   }
 
-  /// The point where it would have been measured at the reference time, by the third-order series of the
-  /// exponential: exact to a millimetre at 50 m for turns up to 6 degrees a sweep.
+  /// The point where it would have been measured at the reference time.
   Eigen::Vector3d undistort(const Eigen::Vector3d& p_lidar, double sweep_fraction) const {
-    const double s = sweep_fraction - reference_fraction_;
-    const Eigen::Vector3d w = s * xi_.tail<3>();
-    const Eigen::Vector3d first = s * xi_.head<3>() + w.cross(p_lidar);
-    const Eigen::Vector3d second = w.cross(first);
-    return p_lidar + first + 0.5 * second + w.cross(second) / 6.0;
+    return moved(p_lidar, sweep_fraction - reference_fraction_);
+  }
+
+  /// The inverse: where a point at rest was, in the lidar frame, when the lidar measured at a sweep fraction.
+  Eigen::Vector3d distort(const Eigen::Vector3d& p_lidar, double sweep_fraction) const {
+    return moved(p_lidar, reference_fraction_ - sweep_fraction);
   }
 
   double reference_fraction() const { return reference_fraction_; }
 
  private:
+  // By a share of the motion, as the third-order series of the exponential: exact to a millimetre at 50 m for
+  // turns up to 6 degrees a sweep.
+  Eigen::Vector3d moved(const Eigen::Vector3d& p_lidar, double share) const {
+    const Eigen::Vector3d w = share * xi_.tail<3>();
+    const Eigen::Vector3d first = share * xi_.head<3>() + w.cross(p_lidar);
+    const Eigen::Vector3d second = w.cross(first);
+    return p_lidar + first + 0.5 * second + w.cross(second) / 6.0;
+  }
+
   SE3::Tangent xi_;
   double reference_fraction_;
 };

@@ -1,19 +1,22 @@
 #pragma once
 
-#include <tsl/robin_set.h>
-
+#include <cstdint>
 #include <span>
 #include <vector>
+
+#include <tsl/robin_map.h>
 
 #include "mlo/core/features.hpp"
 #include "mlo/core/sweep_motion.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/core/voxel_grid.hpp"
 #include "mlo/mapping/config.hpp"
+#include "mlo/mapping/range_image.hpp"
 
 namespace mlo {
 
-/// The long-term static map: environment points of all scans, one per voxel, without the points of objects.
+/// The long-term static map: environment points of all scans, one per voxel, without the points of objects
+/// and without what later scans looked through.
 class StaticMap {
  public:
   explicit StaticMap(const StaticMapConfig& config);
@@ -23,24 +26,36 @@ class StaticMap {
   /// @param T_map_lidar  pose at the motion's reference time
   void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar);
 
+  /// Lets a scan vote on the points of the map: for those that it sees, against those that it sees through.
+  /// @param view  of the whole scan, objects too; motion and pose as above
+  void observe(const RangeImage& view, const SweepMotion& motion, const SE3& T_map_lidar);
+
+  /// Voxels with a point, those that were seen through among them.
   std::size_t size() const;
-  /// All points, in an order that depends only on what was inserted.
+  /// The points that were not seen through, in an order that depends only on what was inserted and observed.
   std::vector<MapPoint> points() const;
 
  private:
+  struct Entry {
+    MapPoint point;
+    float votes = 0.0F;  // for being there
+  };
+  /// A column of the map: what is near the robot is found by its tiles.
+  struct Tile {
+    tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index;  // into entries
+    std::vector<Entry> entries;
+  };
+
   void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
               const SE3& T_map_lidar);
+  void observe(Tile& tile, const RangeImage& view, const SweepMotion& motion, const SE3& T_lidar_map) const;
+  static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }
 
-  /// Part of the voxels, chosen by their hash: tables that grow one after the other spread the cost of growing
-  /// over the scans.
-  struct Shard {
-    tsl::robin_set<VoxelKey, VoxelKeyHash> occupied;
-    std::vector<MapPoint> points;
-  };
-  static constexpr std::size_t kNumShards = 64;
-
+  StaticMapConfig config_;
   float inverse_voxel_;
-  std::vector<Shard> shards_;
+  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> tile_index_;
+  std::vector<Tile> tiles_;
+  std::vector<VoxelKey> tile_keys_;  // of each tile
 };
 
 }  // namespace mlo

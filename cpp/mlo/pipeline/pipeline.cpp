@@ -196,6 +196,11 @@ void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& moti
   }
 }
 
+bool Pipeline::looks_for_free_space(std::size_t frame) const {
+  const int every = config_.mapping.static_map.free_space_every;
+  return every > 0 && frame % static_cast<std::size_t>(every) == 0;
+}
+
 void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
                       FrameResult& result) {
   const SE3 T_map_lidar =
@@ -231,7 +236,10 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
         if (result.localised() || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
       },
       [&] {
-        if (result.localised()) static_map_.insert(seen, motion, T_map_lidar);
+        if (!result.localised()) return;
+        static_map_.insert(seen, motion, T_map_lidar);
+        if (looks_for_free_space(scan.frame))
+          static_map_.observe(RangeImage(scan.points), motion, T_map_lidar);
       });
 
   const SE3 T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);

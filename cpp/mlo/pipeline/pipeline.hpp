@@ -37,11 +37,11 @@ class Pipeline {
     bool empty = true;
     bool motion_known = false;  ///< false until a first increment was estimated, and after a failure
     double stamp_s = 0.0;
-    SE3 T_odom_lidar;         ///< at the reference time of the last scan
-    SE3 T_map_lidar;          ///< the same, refined
-    SE3 T_sweep;              ///< motion of the last sweep, from its start to its end
-    ReferenceScan reference;  ///< last scan's candidates without distortion
-    int scans_lost = 0;       ///< in a row, up to this one; scans too empty to be placed do not count
+    SE3 T_odom_lidar;                 ///< at the reference time of the last scan
+    SE3 T_map_lidar;                  ///< the same, refined
+    SE3 T_sweep;                      ///< motion of the last sweep, from its start to its end
+    ReferenceScan reference;          ///< last scan's candidates without distortion
+    int scans_lost = 0;               ///< in a row, up to this one; scans too empty to be placed do not count
     std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
   };
 
@@ -61,6 +61,7 @@ class Pipeline {
   bool local_maps_are_empty() const;
   void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
 
+  bool looks_for_free_space(std::size_t frame) const;
   void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
               FrameResult& result);
 

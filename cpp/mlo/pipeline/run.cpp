@@ -129,7 +129,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
     if (on_scan) on_scan(i + 1, indices.size());
   }
   output.write_map(pipeline.static_map().points());
-  summary.map_points = pipeline.static_map().size();
+  summary.map_points = pipeline.static_map().points().size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
                                            summary.skipped - kMaxListedProblems));

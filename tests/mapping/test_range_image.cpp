@@ -1,0 +1,86 @@
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mlo/mapping/range_image.hpp"
+
+namespace mlo {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+Eigen::Vector3d direction(double azimuth_deg, double elevation_deg) {
+  const double a = azimuth_deg * kDegree;
+  const double e = elevation_deg * kDegree;
+  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+}
+
+/// A lidar with 32 scan lines within a vertical cylinder of this radius around it, ahead of which (azimuths
+/// up to 10 degrees to both sides) stands a nearer wall.
+std::vector<Point> round_room(double radius_m, double wall_m) {
+  std::vector<Point> points;
+  for (int ring = 0; ring < 32; ++ring) {
+    for (int step = 0; step < 1800; ++step) {
+      const double azimuth_deg = -180.0 + 0.2 * step;
+      const double elevation_deg = 10.0 - 0.7 * ring;
+      const double horizontal_m = std::abs(azimuth_deg) <= 10.0 ? wall_m : radius_m;
+      Point point;
+      point.p_lidar =
+          (direction(azimuth_deg, elevation_deg) * horizontal_m / std::cos(elevation_deg * kDegree))
+              .cast<float>();
+      point.ring = static_cast<std::uint16_t>(ring);
+      point.sweep_fraction = static_cast<float>(step) / 1800.0F;
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+TEST(RangeImage, TellsWhatIsSeenFromWhatIsSeenThroughAndWhatIsHidden) {
+  const RangeImage image(round_room(20.0, 8.0));
+  EXPECT_EQ(image.look(20.0 * direction(90.0, 0.0), 0.3), Sight::hit);
+  EXPECT_EQ(image.look(12.0 * direction(90.0, 0.0), 0.3), Sight::through);
+  EXPECT_EQ(image.look(25.0 * direction(90.0, 0.0), 0.3), Sight::unknown);
+  EXPECT_EQ(image.look(8.0 * direction(0.0, 0.0), 0.3), Sight::hit);
+  EXPECT_EQ(image.look(12.0 * direction(0.0, 0.0), 0.3), Sight::unknown) << "behind the wall";
+}
+
+TEST(RangeImage, WorksAcrossTheSeamBehindTheLidar) {
+  const RangeImage image(round_room(20.0, 8.0));
+  for (const double azimuth_deg : {179.99, -179.99, 180.0}) {
+    EXPECT_EQ(image.look(12.0 * direction(azimuth_deg, 0.0), 0.3), Sight::through) << azimuth_deg;
+  }
+}
+
+TEST(RangeImage, BesideTheRimOfANearerSurfaceNothingLooksFree) {
+  const RangeImage image(round_room(20.0, 8.0));
+  EXPECT_EQ(image.look(7.9 * direction(10.3, 0.0), 0.3), Sight::unknown);
+  EXPECT_EQ(image.look(7.9 * direction(12.0, 0.0), 0.3), Sight::through);
+}
+
+TEST(RangeImage, SaysNothingWhereNoRayWent) {
+  const RangeImage image(round_room(20.0, 8.0));
+  EXPECT_EQ(image.look(12.0 * direction(90.0, 45.0), 0.3), Sight::unknown);
+  EXPECT_EQ(image.look(12.0 * direction(90.0, -45.0), 0.3), Sight::unknown);
+  const RangeImage empty({});
+  EXPECT_EQ(empty.look(direction(0.0, 0.0), 0.3), Sight::unknown);
+  EXPECT_EQ(empty.sweep_fraction(direction(0.0, 0.0)), 0.5);
+}
+
+TEST(RangeImage, KnowsWhenTheLidarLookedInADirection) {
+  const RangeImage image(round_room(20.0, 8.0));
+  EXPECT_NEAR(image.sweep_fraction(direction(-90.0, 0.0)), 0.25, 0.002);
+  EXPECT_NEAR(image.sweep_fraction(direction(90.0, -5.0)), 0.75, 0.002);
+}
+
+TEST(RangeImage, ScanLinesOnTheGroundSpreadWithTheSquareOfTheRange) {
+  const RangeImage image(round_room(20.0, 8.0));
+  const double near_m = image.step_on_ground_m({10.0, 0.0, -1.7});
+  EXPECT_NEAR(near_m, 100.0 / 1.7 * 0.7 * kDegree, 0.2 * near_m);
+  EXPECT_NEAR(image.step_on_ground_m({20.0, 0.0, -1.7}) / near_m, 4.0, 0.2);
+}
+
+}  // namespace
+}  // namespace mlo
