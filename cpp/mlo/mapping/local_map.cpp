@@ -61,7 +61,7 @@ struct NearestPlaces {
   }
   void add(const Place& place) {
     if (place.squared_distance >= worst()) return;
-    std::size_t i = static_cast<std::size_t>(count < max_count ? count++ : count - 1);
+    auto i = static_cast<std::size_t>(count < max_count ? count++ : count - 1);
     for (; i > 0 && places[i - 1].squared_distance > place.squared_distance; --i) places[i] = places[i - 1];
     places[i] = place;
   }
@@ -84,7 +84,8 @@ Eigen::Vector3f LocalMap::middle(const VoxelKey& key) const {
 }
 
 void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
-  const auto spacing2 = static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
+  const auto spacing2 =
+      static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
   for (const Eigen::Vector3f& p : points_map) {
     const VoxelKey key = voxel_key(p, inverse_voxel_);
     std::uint32_t& place = tiles_[Tile::key_of(key)].places[Tile::index_of(key)];
@@ -193,8 +194,8 @@ class LocalMap::Neighbourhood {
 
  private:
   const Tile* find_tile(const VoxelKey& key) {
-    const int index = ((key.x - center_tile_.x + 1) * 3 + (key.y - center_tile_.y + 1)) * 3 +
-                      (key.z - center_tile_.z + 1);
+    const int index =
+        ((key.x - center_tile_.x + 1) * 3 + (key.y - center_tile_.y + 1)) * 3 + (key.z - center_tile_.z + 1);
     const auto bit = std::uint32_t{1} << index;
     const Tile*& tile = tiles_[static_cast<std::size_t>(index)];
     if ((known_ & bit) == 0) {
@@ -222,13 +223,14 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
     voxels[n] = around.find(kNeighbours[n]);
     if (voxels[n] != nullptr) voxels[n]->prefetch();
   }
-  for (std::uint16_t n = 0; n < kNeighbours.size(); ++n) {
+  for (std::size_t n = 0; n < kNeighbours.size(); ++n) {
     const Eigen::Vector3f from_middle = query - in_steps(kNeighbours[n]);
     if (squared_distance_to_voxel(from_middle) >= nearest.worst()) continue;
     if (n >= kAlwaysLoaded) voxels[n] = around.find(kNeighbours[n]);
     if (voxels[n] == nullptr) continue;
     const auto distances2 = voxels[n]->squared_distances(from_middle);
-    for (std::uint16_t i = 0; i < voxels[n]->count; ++i) nearest.add({distances2[i], n, i});
+    for (std::uint16_t i = 0; i < voxels[n]->count; ++i)
+      nearest.add({distances2[i], static_cast<std::uint16_t>(n), i});
   }
 
   NearestPoints result;
@@ -237,7 +239,8 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
   result.count = nearest.count;
   for (std::size_t i = 0; i < static_cast<std::size_t>(result.count); ++i) {
     const NearestPlaces::Place& place = nearest.places[i];
-    const Eigen::Vector3f steps = in_steps(kNeighbours[place.offset]) + voxels[place.offset]->point(place.point);
+    const Eigen::Vector3f steps =
+        in_steps(kNeighbours[place.offset]) + voxels[place.offset]->point(place.point);
     result.points[i] = middle(key) + steps * step_m_;
     result.squared_distances_m2[i] = place.squared_distance * step_m_ * step_m_;
   }

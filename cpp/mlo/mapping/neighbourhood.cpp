@@ -1,7 +1,8 @@
 #include "mlo/mapping/neighbourhood.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include <Eigen/Eigenvalues>
 
 namespace mlo {
 namespace {

@@ -14,6 +14,10 @@ double tangent(const Eigen::Vector3d& p) {
   return p.z() / std::hypot(p.x(), p.y());
 }
 
+std::size_t index(int row, int column, int columns) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+}
+
 // Scan lines that are in use, of those with known numbers.
 int count_rings(std::span<const Point> points) {
   std::array<bool, kMaxRows> used{};
@@ -41,7 +45,7 @@ RangeImage::RangeImage(std::span<const Point> points) {
   for (const Point& point : points) {
     const Eigen::Vector3d p = point.p_lidar.cast<double>();
     const int c = column(p.x(), p.y());
-    Pixel& pixel = pixels_[static_cast<std::size_t>(row(p) * kColumns + c)];
+    Pixel& pixel = pixels_[index(row(p), c, kColumns)];
     const auto range_m = static_cast<float>(p.norm());
     pixel.nearest_m = pixel.nearest_m > 0.0F ? std::min(pixel.nearest_m, range_m) : range_m;
     pixel.farthest_m = std::max(pixel.farthest_m, range_m);
@@ -65,7 +69,7 @@ int RangeImage::row(const Eigen::Vector3d& p_lidar) const {
 
 const RangeImage::Pixel& RangeImage::at(int row, int column) const {
   const int wrapped = (column + kColumns) % kColumns;
-  return pixels_[static_cast<std::size_t>(row * kColumns + wrapped)];
+  return pixels_[index(row, wrapped, kColumns)];
 }
 
 double RangeImage::sweep_fraction(const Eigen::Vector3d& p_lidar) const {

@@ -17,8 +17,8 @@ constexpr double kLeverArmM = 10.0;
 
 // One source point through the iterations.
 struct Source {
-  Eigen::Vector3d p_measured;   // lidar frame at its own time
-  Eigen::Vector3d p_lidar;      // brought to the reference time
+  Eigen::Vector3d p_measured;  // lidar frame at its own time
+  Eigen::Vector3d p_lidar;     // brought to the reference time
   float sweep_fraction = 0.0F;
   const RefinementTerm* term = nullptr;
   Eigen::Vector3f searched_map;  // where its neighbours were last searched

@@ -51,7 +51,7 @@ void append_placed(std::span<const FeaturePoint> features, const SweepMotion& mo
   for (const FeaturePoint& feature : features) {
     const Eigen::Vector3d p_lidar =
         motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
-    points_map.push_back((T_map_lidar * p_lidar).cast<float>());
+    points_map.emplace_back((T_map_lidar * p_lidar).cast<float>());
   }
 }
 
