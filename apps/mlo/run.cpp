@@ -1,7 +1,5 @@
 #include "mlo/pipeline/run.hpp"
 
-#include <tbb/global_control.h>
-
 #include <atomic>
 #include <charconv>
 #include <csignal>
@@ -10,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
 
 #include "apps/mlo/commands.hpp"
 #include "apps/mlo/config_options.hpp"
@@ -82,8 +81,11 @@ void print_summary(const RunSummary& summary, const std::filesystem::path& out) 
   if (summary.predicted > 0) {
     std::cout << fmt::format("lost: {} scans have a predicted pose only\n", summary.predicted);
   }
-  if (summary.degenerate > 0) {
-    std::cout << fmt::format("degenerate: {} scans did not constrain every direction\n", summary.degenerate);
+  if (summary.degenerate + summary.odometry_degenerate > 0) {
+    std::cout << fmt::format(
+        "degenerate: {} scans did not constrain every direction for the odometry, {} for the map "
+        "refinement\n",
+        summary.odometry_degenerate, summary.degenerate);
   }
   std::cout << fmt::format("results in {}: trajectory.txt, static_map.ply, run.json, per_scan.csv\n",
                            out.string());

@@ -53,7 +53,7 @@ struct FeatureConfig {
   int edges_per_segment = 4;
   int edge_candidates_per_segment = 20;
   int surfaces_per_segment = 5;
-  double min_edge_smoothness = 0.01;
+  double min_edge_smoothness = 0.03;
   double max_surface_smoothness = 0.005;
   double candidate_voxel_m = 0.2;
   double no_line_voxel_m = 2.0;
@@ -71,7 +71,9 @@ struct FeatureConfig {
     visit("surfaces_per_segment", surfaces_per_segment, between(0, 100),
           "flattest background points taken per segment; more match better and cost time");
     visit("min_edge_smoothness", min_edge_smoothness, between(0.0, 10.0),
-          "an edge is at least this sharp (c of LOAM); higher keeps poles and jumps of depth only");
+          "an edge is at least this sharp (c of LOAM); higher keeps poles and jumps of depth only, lower "
+          "takes the "
+          "noise of smooth walls for edges, which hides that a tunnel is degenerate");
     visit("max_surface_smoothness", max_surface_smoothness, between(0.0, 10.0),
           "a surface feature is at most this rough (c of LOAM); lower keeps smooth walls only");
     visit("candidate_voxel_m", candidate_voxel_m, between(0.01, 5.0),

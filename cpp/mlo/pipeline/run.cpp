@@ -67,6 +67,7 @@ void tally(const FrameResult& result, RunSummary& summary) {
   summary.times.push_back(result.times);
   if (!result.localised()) ++summary.predicted;
   if (result.refinement.degenerate_directions > 0) ++summary.degenerate;
+  if (result.odometry.degenerate_directions > 0) ++summary.odometry_degenerate;
   if (result.consistency.run && !result.consistency.passed) ++summary.failed_checks;
 }
 

@@ -16,19 +16,20 @@ namespace mlo {
 
 struct RunOptions {
   std::filesystem::path out;
-  std::size_t first_frame = 0;                             ///< frame numbers, both ends included
+  std::size_t first_frame = 0;  ///< frame numbers, both ends included
   std::size_t last_frame = static_cast<std::size_t>(-1);
   std::size_t checkpoint_scans = 500;  ///< the static map is saved this often, 0 only at the end
 };
 
 /// What a run did; written to run.json.
 struct RunSummary {
-  std::size_t scans = 0;      ///< that should have been there
+  std::size_t scans = 0;  ///< that should have been there
   std::size_t processed = 0;
   std::size_t skipped = 0;
-  std::size_t predicted = 0;  ///< processed, but too few matches: the pose is a prediction
-  std::size_t degenerate = 0;
-  std::size_t failed_checks = 0;  ///< consistency checks without a set that passed
+  std::size_t predicted = 0;            ///< processed, but too few matches: the pose is a prediction
+  std::size_t degenerate = 0;           ///< scans that left a direction to the prediction in the refinement
+  std::size_t odometry_degenerate = 0;  ///< and in the odometry
+  std::size_t failed_checks = 0;        ///< consistency checks without a set that passed
   std::size_t invalid_points = 0;
   std::size_t detections = 0;
   double path_m = 0.0;

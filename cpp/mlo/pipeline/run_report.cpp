@@ -72,6 +72,7 @@ std::string to_json(const Dataset& dataset, const PipelineConfig& config, const 
       {"skipped", summary.skipped},
       {"predicted", summary.predicted},
       {"degenerate", summary.degenerate},
+      {"odometry_degenerate", summary.odometry_degenerate},
       {"failed_consistency_checks", summary.failed_checks},
       {"invalid_points", summary.invalid_points},
       {"detections", summary.detections},
