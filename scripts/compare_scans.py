@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Compares folders of KITTI .bin scans: how much do simulated scans resemble real ones?
 
 For each folder: points per scan and per ring, histograms of range and incidence angle, intensity, share of

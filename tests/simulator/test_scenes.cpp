@@ -190,26 +190,30 @@ TEST(Scenes, ParkingHasManyAtRestAndSomeThatLeave) {
   EXPECT_GE(leaving, 2);
 }
 
-TEST(Scenes, TrainMovesBesideTheRobotAndNoDetectorKnowsIt) {
+TEST(Scenes, TrainFillsTheViewOfTheDrivingAndOfTheWaitingRobotAndNoDetectorKnowsIt) {
   const Scene scene = make_scene({SceneKind::train, 200.0, 4});
-  int carriages = 0;
+  std::set<int> train;
   for (const SceneObject& object : scene.objects) {
     if (scene.models[object.model].object_class != ObjectClass::other) continue;
-    ++carriages;
+    train.insert(object.id);
     EXPECT_FALSE(object.detectable);
   }
-  EXPECT_EQ(carriages, 9);
+  EXPECT_EQ(train.size(), 12U);
   RayWorld world(scene);
-  for (const double part : {0.1, 0.5, 0.8}) {
-    const Sweep sweep = scan(scene, world, coarse_sensor(), {}, part * scene.duration_s, 0, 1);
-    std::size_t on_train = 0;
+  constexpr double kDriving_s = 8.0;
+  constexpr double kWaiting_s = 17.0;
+  EXPECT_GT(scene.robot.planar.at(kDriving_s).speed_mps, 3.0);
+  EXPECT_LT(scene.robot.planar.at(kWaiting_s).speed_mps, 0.01);
+  for (const double time_s : {kDriving_s, kWaiting_s}) {
+    const Sweep sweep = scan(scene, world, coarse_sensor(), {}, time_s, 0, 1);
+    double on_train = 0.0;
+    double above_ground = 0.0;
     for (const SimulatedPoint& point : sweep.points) {
-      on_train +=
-          point.object_id > 0 && !scene.objects[static_cast<std::size_t>(point.object_id) - 1].detectable
-              ? 1U
-              : 0U;
+      const bool flat = point.surface == Surface::road || point.surface == Surface::grass;
+      above_ground += flat ? 0.0 : 1.0;
+      on_train += train.contains(point.object_id) ? 1.0 : 0.0;
     }
-    EXPECT_GT(on_train, sweep.points.size() / 20) << "at " << part;
+    EXPECT_GT(on_train, 0.25 * above_ground) << "at " << time_s;
   }
 }
 

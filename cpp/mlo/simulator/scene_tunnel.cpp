@@ -9,7 +9,8 @@ namespace mlo::simulator {
 namespace {
 
 constexpr double kHalfWidth_m = 4.5;
-constexpr double kWall_m = 5.4;  // of the bore, from the middle
+constexpr double kWall_m = 5.4;    // of the bore, from the middle
+constexpr double kSmooth_m = 3.0;  // road goes on behind the walls: no rough ground inside
 constexpr double kLane_m = 2.0;
 constexpr double kLeadIn_m = 60.0;
 constexpr double kApproach_m = 40.0;  // shortest way in the open before the tunnel
@@ -83,7 +84,7 @@ Scene make_tunnel(const SceneOptions& options) {
   const std::size_t lamp = builder.add_mesh(make_lamp(8.0));
   furnish_outside(builder, way.part(0.0, mouth - 3.0), plants, lamp);
   furnish_outside(builder, way.part(exit + 3.0, total), plants, lamp);
-  builder.site.add_road(way, kWall_m);
+  builder.site.add_road(way.part(mouth - kSmooth_m, exit + kSmooth_m), kWall_m + kSmooth_m);
   const std::vector<Eigen::Vector2d> profile = bore();
   builder.place_world(extrude(builder.scene.terrain, way.part(mouth, exit), profile,
                               std::vector<Surface>(profile.size() - 1, Surface::wall), 5.0));
