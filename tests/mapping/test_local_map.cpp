@@ -15,10 +15,12 @@ using Points = std::vector<Eigen::Vector3f>;
 
 // The map keeps points to 1/65536 of a voxel, 15 micrometres for the largest voxels here.
 constexpr float kResolutionM = 2e-5F;
-constexpr float kResolutionM2 = 2.0F * 1.8F * kResolutionM;  // of squared distances to neighbours in 27 voxels
+constexpr float kResolutionM2 =
+    2.0F * 1.8F * kResolutionM;  // of squared distances to neighbours in 27 voxels
 
 void expect_point(const Eigen::Vector3f& found, const Eigen::Vector3f& expected) {
-  EXPECT_LT((found - expected).norm(), kResolutionM) << found.transpose() << " is not " << expected.transpose();
+  EXPECT_LT((found - expected).norm(), kResolutionM)
+      << found.transpose() << " is not " << expected.transpose();
 }
 
 Points random_points(std::size_t count, float half_side_m) {

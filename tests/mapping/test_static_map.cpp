@@ -111,6 +111,33 @@ TEST(StaticMap, WhatLaterScansSeeThroughIsLeftOut) {
   EXPECT_EQ(map.points().size(), 1U) << "no more than max_votes speak for it";
 }
 
+TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
+  Percept seen;
+  for (int i = 0; i < 500; ++i) {
+    seen.surface.candidates.push_back(at(0.37F * static_cast<float>(i), 0.1F, 0.1F));
+    seen.edge.candidates.push_back(at(5.0F, 0.29F * static_cast<float>(i), 0.1F));
+  }
+  StaticMap kept({.memory_radius_m = 1e6});
+  StaticMap spooled({.memory_radius_m = 50.0});
+  for (const float robot_m : {0.0F, 500.0F, 1000.0F, 0.0F, 20.0F}) {
+    const SE3 T_map_lidar(Eigen::Quaterniond::Identity(), {static_cast<double>(robot_m), 0.0, 0.0});
+    for (StaticMap* map : {&kept, &spooled}) {
+      map->insert(seen, SweepMotion::none(), T_map_lidar);
+      map->observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), T_map_lidar);
+      map->spool_far(T_map_lidar.translation().cast<float>());
+    }
+    EXPECT_EQ(spooled.size(), kept.size());
+  }
+  const std::vector<MapPoint> expected = kept.points();
+  const std::vector<MapPoint> found = spooled.points();
+  ASSERT_EQ(found.size(), expected.size());
+  EXPECT_LT(found.size(), kept.size()) << "some were seen through";
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].p_map, expected[i].p_map);
+    EXPECT_EQ(found[i].label, expected[i].label);
+  }
+}
+
 TEST(StaticMap, WhatIsOutOfReachIsNotVotedOn) {
   Percept seen;
   seen.surface.candidates = {at(10.0F, 0.1F, 0.1F)};

@@ -108,6 +108,7 @@ struct StaticMapConfig {
   double free_space_margin_per_range = 0.005;
   double free_space_hit_votes = 0.7;
   double free_space_max_votes = 8.0;
+  double memory_radius_m = 200.0;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -130,6 +131,8 @@ struct StaticMapConfig {
           "keeps more of what is thin");
     visit("free_space_max_votes", free_space_max_votes, between(1.0, 1000.0),
           "no more votes are kept for or against a point: lower follows changes sooner");
+    visit("memory_radius_m", memory_radius_m, between(50.0, 1e6),
+          "what is farther from the robot waits on disk: memory against reading it again on return [m]");
   }
 };
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <tsl/robin_map.h>
-
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
+#include <tsl/robin_map.h>
 
 #include "mlo/core/voxel_grid.hpp"
 #include "mlo/mapping/config.hpp"
@@ -44,8 +44,8 @@ class LocalMap {
   void clear();
 
  private:
-  // Two cache lines, as a search is bound by memory: coordinates in 1/65536 of the voxel's side from its middle.
-  // They are apart, so that the distances to all points are computed side by side.
+  // Two cache lines, as a search is bound by memory: coordinates in 1/65536 of the voxel's side from its
+  // middle. They are apart, so that the distances to all points are computed side by side.
   struct alignas(64) Voxel {
     std::array<std::int16_t, NearestPoints::kMax> x;
     std::array<std::int16_t, NearestPoints::kMax> y;
@@ -84,7 +84,9 @@ class LocalMap {
 
   // Voxels live in blocks, so that growing never moves them: no scan pays for copying the map.
   static constexpr std::uint32_t kBlockBits = 10;
-  Voxel& voxel(std::uint32_t place) { return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)]; }
+  Voxel& voxel(std::uint32_t place) {
+    return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)];
+  }
   const Voxel& voxel(std::uint32_t place) const {
     return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)];
   }

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
+
+#include <Eigen/Core>
 
 #include "mlo/mapping/config.hpp"
 #include "mlo/mapping/local_map.hpp"

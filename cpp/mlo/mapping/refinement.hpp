@@ -20,9 +20,9 @@ struct RefinementTerm {
 
 /// What is known before a scan is registered.
 struct RefinementGuess {
-  SE3 T_map_lidar_previous;       ///< pose of the previous scan, at its reference time
-  SE3 T_previous_current;         ///< increment as predicted or as odometry has it
-  bool motion_known = true;       ///< false: search wide
+  SE3 T_map_lidar_previous;  ///< pose of the previous scan, at its reference time
+  SE3 T_previous_current;    ///< increment as predicted or as odometry has it
+  bool motion_known = true;  ///< false: search wide
   SweepTiming timing;
 };
 

@@ -17,6 +17,13 @@ VoxelKey tile_key(const Eigen::Vector3f& p_map) {
   return key;
 }
 
+// From a place to the tile; 0 within it.
+float distance_m(const VoxelKey& tile, const Eigen::Vector3f& p_map) {
+  const Eigen::Array2f low(static_cast<float>(tile.x) * kTileM, static_cast<float>(tile.y) * kTileM);
+  const Eigen::Array2f p = p_map.head<2>().array();
+  return (low - p).max(p - low - kTileM).max(0.0F).matrix().norm();
+}
+
 }  // namespace
 
 StaticMap::StaticMap(const StaticMapConfig& config)
@@ -34,31 +41,58 @@ void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, c
     const Eigen::Vector3d p_lidar =
         motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
     const Eigen::Vector3f p_map = (T_map_lidar * p_lidar).cast<float>();
-    const VoxelKey key = tile_key(p_map);
-    const auto [found, is_new_tile] = tile_index_.try_emplace(key, static_cast<std::uint32_t>(tiles_.size()));
-    if (is_new_tile) {
-      tiles_.emplace_back();
-      tile_keys_.push_back(key);
-    }
-    Tile& tile = tiles_[found->second];
+    Tile& tile = tile_at(p_map);
     const auto next = static_cast<std::uint32_t>(tile.entries.size());
     const auto [place, is_new] = tile.index.try_emplace(voxel_key(p_map, inverse_voxel_), next);
     if (is_new) tile.entries.push_back({{p_map, feature.intensity, label}});
   }
 }
 
+StaticMap::Tile& StaticMap::tile_at(const Eigen::Vector3f& p_map) {
+  const VoxelKey key = tile_key(p_map);
+  const auto [found, is_new] = tile_index_.try_emplace(key, static_cast<std::uint32_t>(tiles_.size()));
+  if (is_new) tiles_.emplace_back().key = key;
+  Tile& tile = tiles_[found->second];
+  if (tile.num_spooled > 0) fetch(tile);
+  return tile;
+}
+
+void StaticMap::fetch(Tile& tile) const {
+  tile.entries = entries_of(tile);
+  tile.num_spooled = 0;
+  for (std::uint32_t i = 0; i < tile.entries.size(); ++i) {
+    tile.index.emplace(voxel_key(tile.entries[i].point.p_map, inverse_voxel_), i);
+  }
+}
+
+std::vector<StaticMap::Entry> StaticMap::entries_of(const Tile& tile) const {
+  if (tile.num_spooled == 0) return tile.entries;
+  std::vector<Entry> entries(tile.num_spooled);
+  spool_.read(tile.place, std::as_writable_bytes(std::span(entries)));
+  return entries;
+}
+
+void StaticMap::spool_far(const Eigen::Vector3f& center_map) {
+  for (Tile& tile : tiles_) {
+    if (tile.entries.empty() ||
+        distance_m(tile.key, center_map) <= static_cast<float>(config_.memory_radius_m))
+      continue;
+    tile.place = spool_.write(std::as_bytes(std::span(tile.entries)));
+    tile.num_spooled = tile.entries.size();
+    tile.entries = {};
+    tile.index = {};
+  }
+}
+
 void StaticMap::observe(const RangeImage& view, const SweepMotion& motion, const SE3& T_map_lidar) {
-  const Eigen::Vector3f center = T_map_lidar.translation().cast<float>();
-  const double reach_m = config_.free_space_range_m + static_cast<double>(kTileM);
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
-    const Eigen::Vector2f middle((static_cast<float>(tile_keys_[i].x) + 0.5F) * kTileM,
-                                 (static_cast<float>(tile_keys_[i].y) + 0.5F) * kTileM);
-    if ((middle - center.head<2>()).norm() <= static_cast<float>(reach_m)) near.push_back(i);
+  const Eigen::Vector3f center_map = T_map_lidar.translation().cast<float>();
+  std::vector<Tile*> near;
+  for (Tile& tile : tiles_) {
+    const bool in_reach = distance_m(tile.key, center_map) <= static_cast<float>(config_.free_space_range_m);
+    if (in_reach && tile.num_spooled == 0) near.push_back(&tile);
   }
   const SE3 T_lidar_map = T_map_lidar.inverse();
-  parallel_for_each_index(near.size(),
-                          [&](std::size_t i) { observe(tiles_[near[i]], view, motion, T_lidar_map); });
+  parallel_for_each_index(near.size(), [&](std::size_t i) { observe(*near[i], view, motion, T_lidar_map); });
 }
 
 void StaticMap::observe(Tile& tile, const RangeImage& view, const SweepMotion& motion,
@@ -82,7 +116,7 @@ void StaticMap::observe(Tile& tile, const RangeImage& view, const SweepMotion& m
 
 std::size_t StaticMap::size() const {
   std::size_t size = 0;
-  for (const Tile& tile : tiles_) size += tile.entries.size();
+  for (const Tile& tile : tiles_) size += std::max(tile.entries.size(), tile.num_spooled);
   return size;
 }
 
@@ -90,7 +124,7 @@ std::vector<MapPoint> StaticMap::points() const {
   std::vector<MapPoint> all;
   all.reserve(size());
   for (const Tile& tile : tiles_) {
-    for (const Entry& entry : tile.entries) {
+    for (const Entry& entry : entries_of(tile)) {
       if (!is_seen_through(entry)) all.push_back(entry.point);
     }
   }

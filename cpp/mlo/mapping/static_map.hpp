@@ -12,6 +12,7 @@
 #include "mlo/core/voxel_grid.hpp"
 #include "mlo/mapping/config.hpp"
 #include "mlo/mapping/range_image.hpp"
+#include "mlo/mapping/spool.hpp"
 
 namespace mlo {
 
@@ -30,6 +31,10 @@ class StaticMap {
   /// @param view  of the whole scan, objects too; motion and pose as above
   void observe(const RangeImage& view, const SweepMotion& motion, const SE3& T_map_lidar);
 
+  /// Puts the parts that are far from a place (map frame [m]) on disk. They come back when they are needed.
+  /// @throws InputError when the temporary files cannot be written
+  void spool_far(const Eigen::Vector3f& center_map);
+
   /// Voxels with a point, those that were seen through among them.
   std::size_t size() const;
   /// The points that were not seen through, in an order that depends only on what was inserted and observed.
@@ -43,11 +48,17 @@ class StaticMap {
   /// A column of the map: what is near the robot is found by its tiles.
   struct Tile {
     tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index;  // into entries
-    std::vector<Entry> entries;
+    std::vector<Entry> entries;                                   // empty while on disk
+    VoxelKey key;
+    std::uint64_t place = 0;      // on disk
+    std::size_t num_spooled = 0;  // entries there; 0: the tile is in memory
   };
 
   void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
               const SE3& T_map_lidar);
+  Tile& tile_at(const Eigen::Vector3f& p_map);
+  void fetch(Tile& tile) const;
+  std::vector<Entry> entries_of(const Tile& tile) const;
   void observe(Tile& tile, const RangeImage& view, const SweepMotion& motion, const SE3& T_lidar_map) const;
   static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }
 
@@ -55,7 +66,7 @@ class StaticMap {
   float inverse_voxel_;
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> tile_index_;
   std::vector<Tile> tiles_;
-  std::vector<VoxelKey> tile_keys_;  // of each tile
+  Spool spool_;
 };
 
 }  // namespace mlo

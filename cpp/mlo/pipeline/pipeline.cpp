@@ -240,6 +240,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
         static_map_.insert(seen, motion, T_map_lidar);
         if (looks_for_free_space(scan.frame))
           static_map_.observe(RangeImage(scan.points), motion, T_map_lidar);
+        static_map_.spool_far(T_map_lidar.translation().cast<float>());
       });
 
   const SE3 T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);

@@ -97,6 +97,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
   Pipeline pipeline(config);
   std::optional<Eigen::Vector3d> last_position;
   double skipped_in_a_row = 0.0;
+  std::size_t next_checkpoint = options.checkpoint_scans;
   std::string first_problem;
   const auto read = [&](std::size_t i) {
     return std::async(std::launch::async, [&, i] { return dataset.scans->read(indices[i]); });
@@ -124,13 +125,16 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
       if (last_position) summary.path_m += (position - *last_position).norm();
       last_position = position;
     }
-    if (options.checkpoint_scans > 0 && (i + 1) % options.checkpoint_scans == 0) {
+    if (options.checkpoint_scans > 0 && i + 1 >= next_checkpoint) {
       output.write_map(pipeline.static_map().points());
+      // Ever rarer, as the map grows: saving must not cost more per scan the longer the run is.
+      next_checkpoint = std::max(i + 1 + options.checkpoint_scans, (i + 1) * 3 / 2);
     }
     if (on_scan) on_scan(i + 1, indices.size());
   }
-  output.write_map(pipeline.static_map().points());
-  summary.map_points = pipeline.static_map().points().size();
+  const std::vector<MapPoint> map = pipeline.static_map().points();
+  output.write_map(map);
+  summary.map_points = map.size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
                                            summary.skipped - kMaxListedProblems));
