@@ -10,6 +10,7 @@
 #include "apps/mlo/eval.hpp"
 #include "mlo/core/error.hpp"
 #include "mlo/evaluation/tracking_evaluation.hpp"
+#include "mlo/io/calibration.hpp"
 #include "mlo/io/kitti_tracks.hpp"
 
 namespace mlo::apps {
@@ -19,17 +20,21 @@ constexpr const char* kExplanation =
     R"(HOTA, DetA, AssA, LocA, MOTA, MOTP, IDSW, Frag, MT, PT, ML, FP, FN and IDF1 follow TrackEval's KITTI protocol. The lines
 'KITTI kit' count as the older development kit does, for comparison with older papers; sAMOTA, AMOTA and AMOTP are AB3DMOT's
 means over recall, counted likewise. Vans for cars, sitting persons for pedestrians, DontCare regions, truncated and
-heavily occluded objects are neither demanded nor held against a track. Measures in per cent, others are counts.
+heavily occluded objects are neither demanded nor held against a track. With --calib, tracks without image boxes get the
+rectangle around their projected 3D box. Measures in per cent, others are counts.
 
 Examples:
   mlo eval tracking --truth training/label_02 --estimate out/tracks
   mlo eval tracking --truth training/label_02 --estimate out/tracks --class car pedestrian --sequences 0000 0002 --json
+  mlo eval tracking --truth training/label_02 --estimate out/tracks --calib training/calib
   mlo eval tracking --truth label_02/0000.txt --estimate out/0000.txt --match box --threshold 0.25
 )";
 
 struct Options {
   std::filesystem::path truth;
   std::filesystem::path estimate;
+  std::filesystem::path calibration;
+  std::vector<double> image_size_px = {1242.0, 375.0};
   std::vector<std::string> classes = {"car"};
   std::vector<std::string> sequences;
   std::vector<std::string> match = {"image", "box", "distance"};
@@ -55,8 +60,22 @@ void require_image_boxes(const std::vector<ObjectRecord>& records, const std::st
     if (record.has_image_box()) continue;
     throw InputError(
         fmt::format("{}, sequence {}: track {} has no image box in frame {}; the protocol needs them to "
-                    "leave out small and DontCare objects, so write them with the tracks",
+                    "leave out small and DontCare objects: write them with the tracks, or give the "
+                    "calibration with --calib, to project the 3D boxes",
                     path.string(), name, record.track_id, record.frame));
+  }
+}
+
+// What lies outside the image keeps an empty box, which the protocol excuses.
+void project_boxes(std::vector<ObjectRecord>& records, const std::string& name, const Options& options) {
+  const std::filesystem::path file =
+      is_directory(options.calibration) ? options.calibration / (name + ".txt") : options.calibration;
+  const Calibration calibration = read_calibration_file(file);
+  if (!calibration.P2) throw InputError(fmt::format("{}: holds no P2, the camera's matrix", file.string()));
+  const Eigen::Vector2d size_px(options.image_size_px[0], options.image_size_px[1]);
+  for (ObjectRecord& record : records) {
+    if (record.has_image_box()) continue;
+    record.image_box = project_box(kitti_box_of(record), *calibration.P2, size_px).value_or(Box2d{});
   }
 }
 
@@ -74,7 +93,11 @@ std::vector<SequenceRecords> load(const Options& options) {
         {.name = name,
          .truth = records_of(truth, name, options.truth),
          .tracks = single_files ? tracks.begin()->second : records_of(tracks, name, options.estimate)});
-    require_image_boxes(sequences.back().tracks, name, options.estimate);
+    if (options.calibration.empty()) {
+      require_image_boxes(sequences.back().tracks, name, options.estimate);
+    } else {
+      project_boxes(sequences.back().tracks, name, options);
+    }
   }
   return sequences;
 }
@@ -222,6 +245,14 @@ void add_eval_tracking(CLI::App& eval) {
       ->add_option("--estimate", options->estimate,
                    "KITTI tracking result file, or folder with one per sequence")
       ->required();
+  command->add_option(
+      "--calib", options->calibration,
+      "KITTI tracking calibration file, or folder with one per sequence: projects the 3D boxes of "
+      "tracks without image boxes");
+  command->add_option("--image-size", options->image_size_px, "clips projected boxes: width height [px]")
+      ->expected(2)
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--class", options->classes, "what to score, as named in the files")
       ->check(CLI::IsMember({"car", "van", "truck", "pedestrian", "cyclist"}))
       ->capture_default_str();

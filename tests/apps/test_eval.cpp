@@ -107,7 +107,27 @@ TEST(EvalTracking, TracksWithoutImageBoxesAreRefused) {
   const std::string tracks = folder.write("tracks.txt", "0 1 Car 0 0 0 -1 -1 -1 -1" + rest).string();
   const ProgramRun run = run_program({"eval", "tracking", "--truth", truth, "--estimate", tracks});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.err, HasSubstr("no image box"));
+  EXPECT_THAT(run.err, AllOf(HasSubstr("no image box"), HasSubstr("--calib")));
+}
+
+TEST(EvalTracking, ProjectsBoxesWhereImageBoxesAreMissing) {
+  const TempFolder folder;
+  // 20 m ahead, 4 m long across the view, 1.5 m high, bottom 1.5 m below the camera; focal length 500 px. The
+  // near face is 19.2 m away: u = 500 +- 500 * 2 / 19.2, v from 200 to 200 + 500 * 1.5 / 19.2.
+  const std::string rest = " 1.5 1.6 4.0 0.0 1.5 20.0 0.0\n";
+  const std::string truth =
+      folder.write("truth.txt", "0 1 Car 0 0 0 447.9167 200 552.0833 239.0625" + rest).string();
+  const std::string tracks = folder
+                                 .write("tracks.txt", "0 1 Car 0 0 0 -1 -1 -1 -1" + rest +
+                                                          "0 2 Car 0 0 0 -1 -1 -1 -1 1.5 1.6 4 0 1.5 -20 0\n")
+                                 .string();
+  const std::string calib = folder.write("calib.txt", "P2: 500 0 500 0 0 500 200 0 0 0 1 0\n").string();
+  const ProgramRun run = run_program({"eval", "tracking", "--truth", truth, "--estimate", tracks, "--calib",
+                                      calib, "--match", "image", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto all = nlohmann::json::parse(run.out)[0]["all"];
+  EXPECT_NEAR(all["motp"].get<double>(), 1.0, 1e-5);
+  EXPECT_EQ(all["false_positives"].get<int>(), 0);  // the car behind the camera is not in the image
 }
 
 constexpr const char* kAsciiPcd =

@@ -221,6 +221,38 @@ TEST(TrackingEvaluation, AnIdTwiceInAFrameIsAnError) {
   EXPECT_THAT(problem(twice, once), testing::HasSubstr("frame 4: true object 1 occurs twice"));
 }
 
+TEST(TrackingEvaluation, EmptyFramesChangeNothing) {
+  // Every second frame holds neither truth nor tracks; then also frames with one of the two only.
+  const auto spread = [](Records records) {
+    for (ObjectRecord& record : records) record.frame *= 2;
+    return records;
+  };
+  const Records truth = spread(standing_cars(kFrames, kCars));
+  expect_perfect(score(truth, truth));
+  Records late = truth;
+  std::erase_if(late, [](const ObjectRecord& record) { return record.frame < 4; });
+  const TrackingScores missed = score(truth, late);
+  EXPECT_EQ(missed.clear.false_negatives, 6U);
+  EXPECT_EQ(missed.clear.false_positives + missed.clear.id_switches + missed.clear.fragments, 0U);
+  const TrackingScores early = score(late, truth);
+  EXPECT_EQ(early.clear.false_positives, 6U);
+  EXPECT_EQ(early.clear.false_negatives, 0U);
+  EXPECT_DOUBLE_EQ(early.clear.motp(), 1.0);
+}
+
+TEST(TrackingEvaluation, ATrackOfOneFrameIsOneTruePositive) {
+  const Records truth = standing_cars(kFrames, 1);
+  const TrackingScores scores = score(truth, {car(3, 7, 0.0)});
+  EXPECT_EQ(scores.clear.true_positives, 1U);
+  EXPECT_EQ(scores.clear.false_negatives, kFrames - 1);
+  EXPECT_EQ(scores.clear.mostly_lost, 1U);
+  EXPECT_NEAR(scores.hota.ass_a(), 0.1, 1e-12);
+  EXPECT_NEAR(scores.hota.det_a(), 0.1, 1e-12);
+  EXPECT_DOUBLE_EQ(scores.identity.f1(), 2.0 / 11.0);
+  // Truth of one frame, too: nothing is divided by the length of a life.
+  expect_perfect(score({car(3, 7, 0.0)}, {car(3, 1, 0.0)}));
+}
+
 TEST(TrackingEvaluation, SequencesAddUpAndKeepTheirIdsApart) {
   const Records truth = standing_cars(kFrames, kCars);
   Records swapped = truth;
