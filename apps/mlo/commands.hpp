@@ -13,5 +13,6 @@ void add_eval(CLI::App& program);
 void add_config(CLI::App& program);
 void add_simulate(CLI::App& program);  // only where the simulator is built
 void add_info(CLI::App& program);
+void add_truth(CLI::App& program);
 
 }  // namespace mlo::apps

@@ -57,7 +57,8 @@ std::vector<ObjectPose> read_objects(const std::filesystem::path& file, const st
     throw InputError(
         fmt::format("{}: does not hold the lidar's place relative to the camera", calibration.string()));
   }
-  return objects_in_map(read_kitti_tracks(file), read_trajectory(poses), *known.T_camera0_lidar);
+  return objects_in_map(boxes_in_lidar(read_kitti_tracks(file), *known.T_camera0_lidar),
+                        read_trajectory(poses));
 }
 
 ObjectEvaluation evaluate(const Options& options) {

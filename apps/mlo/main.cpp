@@ -17,8 +17,8 @@ namespace {
 
 enum ExitCode { kDone = 0, kBadInput = 1, kBadUsage = 2, kBug = 3 };  // 4: see run.cpp
 
-// Scans come and go ten times a second with megabytes each. By default the C library gives such blocks back to
-// the system and gets them anew, page fault by page fault, which costs more than the work done on them.
+// Scans come and go ten times a second with megabytes each. By default the C library gives such blocks back
+// to the system and gets them anew, page fault by page fault, which costs more than the work done on them.
 void keep_freed_memory() {
   constexpr int kBytes = 32 * 1024 * 1024;  // the largest threshold that is allowed
   mallopt(M_MMAP_THRESHOLD, kBytes);
@@ -93,6 +93,7 @@ int run(int argc, char** argv) {
   mlo::apps::add_eval(program);
   mlo::apps::add_config(program);
   mlo::apps::add_info(program);
+  mlo::apps::add_truth(program);
 #ifdef MLO_WITH_SIMULATOR
   mlo::apps::add_simulate(program);
 #endif

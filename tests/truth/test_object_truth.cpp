@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mlo/io/kitti_box.hpp"
+#include "mlo/core/error.hpp"
 #include "mlo/io/kitti_tracks.hpp"
 #include "mlo/truth/object_truth.hpp"
 #include "temp_folder.hpp"
@@ -30,7 +30,7 @@ TEST(ObjectTruth, BoxesGoThroughTheLidarToTheMap) {
   poses.T_world_body = {
       SE3(Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ())),
           {100.0, 0.0, 0.0})};
-  const auto objects = objects_in_map(read_kitti_tracks(file), poses, T_camera0_lidar());
+  const auto objects = objects_in_map(boxes_in_lidar(read_kitti_tracks(file), T_camera0_lidar()), poses);
   ASSERT_EQ(objects.size(), 1U);  // no DontCare, none without a pose
   const ObjectPose& car = objects.front();
   EXPECT_EQ(car.id, 3);
@@ -42,8 +42,41 @@ TEST(ObjectTruth, BoxesGoThroughTheLidarToTheMap) {
   EXPECT_TRUE(car.size_lwh_m.isApprox(Eigen::Vector3d(4.0, 1.6, 1.5)));
 }
 
+// A tracklet file with the elements that matter: tracklet 0 in frame 2, tracklet 1 in frames 0 and 1.
+constexpr const char* kTracklets = R"(<boost_serialization><tracklets><count>2</count>
+<item><objectType>Van</objectType><h>2</h><w>1.8</w><l>4.4</l><first_frame>2</first_frame>
+<poses><count>1</count><item><tx>13.5</tx><ty>4.5</ty><tz>-1.7</tz><rx>0</rx><ry>0</ry><rz>0.5</rz></item></poses></item>
+<item><objectType>Pedestrian</objectType><h>1.8</h><w>0.6</w><l>0.7</l><first_frame>0</first_frame>
+<poses><count>2</count><item><tx>1</tx><ty>2</ty><tz>-1.6</tz><rx>0</rx><ry>0</ry><rz>0</rz></item>
+<item><tx>1.5</tx><ty>2</ty><tz>-1.6</tz><rx>0</rx><ry>0</ry><rz>0</rz></item></poses></item>
+</tracklets></boost_serialization>)";
+
+TEST(ObjectTruth, TrackletsStandOnTheirPlace) {
+  const test::TempFolder folder;
+  const auto boxes = read_tracklets(folder.write("tracklet_labels.xml", kTracklets));
+  ASSERT_EQ(boxes.size(), 3U);
+  EXPECT_EQ(boxes[0].frame, 2U);
+  EXPECT_EQ(boxes[0].id, 0);
+  EXPECT_EQ(boxes[0].type, "van");
+  EXPECT_TRUE(boxes[0].box_lidar.center_lidar_m.isApprox(Eigen::Vector3d(13.5, 4.5, -0.7)));
+  EXPECT_TRUE(boxes[0].box_lidar.size_lwh_m.isApprox(Eigen::Vector3d(4.4, 1.8, 2.0)));
+  EXPECT_EQ(boxes[0].box_lidar.yaw_rad, 0.5);
+  EXPECT_EQ(boxes[2].frame, 1U);
+  EXPECT_EQ(boxes[2].id, 1);
+  EXPECT_EQ(boxes[2].box_lidar.center_lidar_m.x(), 1.5);
+}
+
+TEST(ObjectTruth, BrokenTrackletsNameTheFile) {
+  const test::TempFolder folder;
+  EXPECT_THROW(read_tracklets(folder.write("a.xml", "<html></html>")), InputError);
+  const std::string cut = std::string(kTracklets).substr(0, 330);
+  EXPECT_THROW(read_tracklets(folder.write("b.xml", cut)), InputError);
+  EXPECT_TRUE(read_tracklets(folder.write("c.xml", "<tracklets></tracklets>")).empty());
+}
+
 TEST(ObjectTruth, NothingGivesNothing) {
-  EXPECT_TRUE(objects_in_map({}, {}, T_camera0_lidar()).empty());
+  EXPECT_TRUE(objects_in_map({}, {}).empty());
+  EXPECT_TRUE(boxes_in_lidar({}, T_camera0_lidar()).empty());
 }
 
 }  // namespace

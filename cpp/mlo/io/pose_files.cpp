@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
-#include "mlo/io/sequence_files.hpp"
+#include "mlo/io/oxts.hpp"
 #include "mlo/io/text_records.hpp"
 
 namespace mlo {
@@ -17,25 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegToRad = std::numbers::pi / 180.0;
 // Files with few digits are off by 1e-3; anything beyond this is not a rotation at all.
 constexpr double kRotationTolerance = 1e-2;
-
-struct OxtsRecord {
-  double latitude_deg = 0.0;
-  double longitude_deg = 0.0;
-  double altitude_m = 0.0;
-  Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();
-};
-
-OxtsRecord parse_oxts(const std::string& line, const std::string& where) {
-  constexpr std::size_t kFieldsUsed = 6;
-  const std::vector<double> v = parse_numbers(line, where);
-  if (v.size() < kFieldsUsed) {
-    throw InputError(fmt::format("{}: {} numbers, an oxts record has 30", where, v.size()));
-  }
-  return {v[0], v[1], v[2], {v[3], v[4], v[5]}};
-}
 
 SE3 parse_kitti_pose(const std::string& line, const std::string& where) {
   const std::vector<double> row = parse_numbers(line, where);
@@ -51,28 +33,6 @@ SE3 parse_kitti_pose(const std::string& line, const std::string& where) {
         fmt::format("{}: no finite pose with a rotation; a KITTI pose is r11 r12 r13 tx r21 ...", where));
   }
   return SE3::from_matrix(matrix);
-}
-
-// Mercator projection, as KITTI's development kit defines the poses of its oxts data.
-std::vector<SE3> project(const std::vector<OxtsRecord>& records) {
-  constexpr double kEarthRadius = 6378137.0;
-  std::vector<SE3> poses;
-  if (records.empty()) return poses;
-  const double scale = std::cos(records.front().latitude_deg * kDegToRad);
-  const auto place = [&](const OxtsRecord& r) {
-    return Eigen::Vector3d(
-        scale * kEarthRadius * r.longitude_deg * kDegToRad,
-        scale * kEarthRadius * std::log(std::tan((90.0 + r.latitude_deg) * kDegToRad / 2.0)), r.altitude_m);
-  };
-  const Eigen::Vector3d origin = place(records.front());
-  for (const OxtsRecord& record : records) {
-    const Eigen::Vector3d& angles = record.roll_pitch_yaw_rad;
-    const Eigen::Quaterniond rotation = Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
-                                        Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
-                                        Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX());
-    poses.emplace_back(rotation, place(record) - origin);
-  }
-  return poses;
 }
 
 // Where row i belongs to frame i.
@@ -121,33 +81,17 @@ PoseList read_kitti_poses(const fs::path& file) {
 }
 
 PoseList read_oxts_lines(const fs::path& file) {
-  std::vector<OxtsRecord> records;
-  const std::vector<std::string> lines = read_lines(file);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    records.push_back(parse_oxts(lines[i], fmt::format("{}:{}", file.string(), i + 1)));
-  }
-  return numbered(project(records));
+  return numbered(oxts_poses(read_oxts_file(file)));
 }
 
 PoseList read_oxts_folder(const fs::path& folder) {
-  std::vector<double> stamps_s;
-  if (const fs::path file = folder / "timestamps.txt"; fs::exists(file)) stamps_s = read_stamps_s(file);
+  const std::vector<OxtsRecord> records = read_oxts_records(folder);
   PoseList poses;
-  std::vector<OxtsRecord> records;
-  for (const ScanFile& entry : list_numbered_scans(folder / "data", ".txt")) {
-    if (!fs::exists(entry.path)) continue;
-    const std::vector<std::string> lines = read_lines(entry.path);
-    if (lines.empty())
-      throw InputError(fmt::format("{}: empty, an oxts record is needed", entry.path.string()));
-    records.push_back(parse_oxts(lines.front(), fmt::format("{}:1", entry.path.string())));
-    poses.frames.push_back(entry.frame);
+  poses.T_world_body = oxts_poses(records);
+  for (const OxtsRecord& record : records) {
+    poses.frames.push_back(record.frame);
+    if (record.stamp_s) poses.stamps_s.push_back(*record.stamp_s);
   }
-  poses.T_world_body = project(records);
-  const bool all_known = std::all_of(poses.frames.begin(), poses.frames.end(), [&](std::size_t frame) {
-    return frame < stamps_s.size() && std::isfinite(stamps_s[frame]);
-  });
-  if (!all_known) return poses;
-  for (const std::size_t frame : poses.frames) poses.stamps_s.push_back(stamps_s[frame]);
   return poses;
 }
 

@@ -38,7 +38,6 @@ std::string oxts_line(const ImuPoses& poses) {
   const Eigen::Vector3d velocity = (after - before) / (2.0 * h);
   const Eigen::Vector3d acceleration =
       (after - 2.0 * p + before) / (h * h) + Eigen::Vector3d(0, 0, kGravity_mps2);
-  const Eigen::Vector3d v = world_to_body * velocity;
   const Eigen::Vector3d a = world_to_body * acceleration;
   const Eigen::Vector3d w =
       so3_log(poses.T_world_imu_before.rotation().conjugate() * poses.T_world_imu_after.rotation()) /
@@ -47,6 +46,8 @@ std::string oxts_line(const ImuPoses& poses) {
   const double roll = std::atan2(R(2, 1), R(2, 2));
   const double pitch = std::asin(-R(2, 0));
   const double yaw = std::atan2(R(1, 0), R(0, 0));
+  // KITTI's forward, left and up are level: parallel to the earth, whatever the car's tilt.
+  const Eigen::Vector3d v = Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * velocity;
   const auto [latitude, longitude] = geographic(p.x(), p.y());
   std::string line = fmt::format("{:.12f} {:.12f} {:.6f} {:.10f} {:.10f} {:.10f}", latitude, longitude,
                                  p.z() + 100.0, roll, pitch, yaw);
