@@ -14,5 +14,7 @@ void add_config(CLI::App& program);
 void add_simulate(CLI::App& program);  // only where the simulator is built
 void add_info(CLI::App& program);
 void add_truth(CLI::App& program);
+void add_report(CLI::App& program);
+void add_reproduce(CLI::App& program);
 
 }  // namespace mlo::apps

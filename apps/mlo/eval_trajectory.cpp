@@ -9,12 +9,10 @@
 
 #include "apps/mlo/eval.hpp"
 #include "mlo/core/error.hpp"
-#include "mlo/evaluation/plot.hpp"
-#include "mlo/evaluation/trajectory_error.hpp"
+#include "mlo/evaluation/trajectory_plots.hpp"
 #include "mlo/io/atomic_file.hpp"
-#include "mlo/io/calibration.hpp"
-#include "mlo/io/pose_files.hpp"
 #include "mlo/io/trajectory_file.hpp"
+#include "mlo/io/true_poses.hpp"
 
 namespace mlo::apps {
 namespace {
@@ -44,32 +42,10 @@ struct Options {
   bool json = false;
 };
 
-struct Evaluation {
-  std::string name;
-  PoseMatching matching;
-  TrajectoryErrors errors;
-};
+using Evaluation = TrajectoryEvaluation;
 
 TrajectoryView view(const PoseList& poses) {
   return {poses.frames, poses.stamps_s, poses.T_world_body};
-}
-
-// Poses of the lidar where a calibration is given; else of the body that the file is about.
-PoseList read_truth(const Options& options) {
-  const bool is_oxts = std::filesystem::is_directory(options.truth);
-  PoseList poses = is_oxts ? read_oxts_folder(options.truth) : read_trajectory(options.truth);
-  if (options.calibration.empty()) return poses;
-  const Calibration calibration = std::filesystem::is_directory(options.calibration)
-                                      ? read_raw_calibration(options.calibration)
-                                      : read_calibration_file(options.calibration);
-  const std::optional<SE3>& T_body_lidar = is_oxts ? calibration.T_imu_lidar : calibration.T_camera0_lidar;
-  if (!T_body_lidar) {
-    throw InputError(
-        fmt::format("{}: does not hold the lidar's place relative to the {}; give the calibration that "
-                    "belongs to the truth",
-                    options.calibration.string(), is_oxts ? "IMU" : "camera"));
-  }
-  return rebased(std::move(poses), *T_body_lidar);
 }
 
 MatchBy choose_matching(const std::string& match, const PoseList& truth, const PoseList& estimate) {
@@ -189,46 +165,15 @@ nlohmann::ordered_json json_of(const Evaluation& evaluation) {
           {"frames", std::move(frames)}};
 }
 
-std::vector<PlotPanel> plot_panels(const std::vector<Evaluation>& evaluations, const std::string& plane) {
-  const bool camera = plane == "xz";
-  const auto project = [&](const Eigen::Vector3d& p) {
-    return Eigen::Vector2d(p.x(), camera ? p.z() : p.y());
-  };
-  std::vector<PlotPanel> panels{
-      {"Path seen from above, aligned", "x [m]", camera ? "z [m]" : "y [m]", true, {}},
-      {"Position error after alignment", "frame", "[m]", false, {}},
-      {"Translation error of each step (RTE)", "frame", "[m/frame]", false, {}},
-      {"Rotation error of each step (RRE)", "frame", "[deg/frame]", false, {}}};
-  for (std::size_t k = 0; k < evaluations.size(); ++k) {
-    const auto& [name, matching, errors] = evaluations[k];
-    if (k == 0) {
-      PlotCurve truth{"truth", 0, {}};
-      for (const PosePair& pair : matching.pairs)
-        truth.points.push_back(project(pair.T_world_truth.translation()));
-      panels[0].curves.push_back(std::move(truth));
-    }
-    std::vector<PlotCurve> curves(panels.size(), {name, k + 1, {}});
-    for (std::size_t i = 0; i < matching.pairs.size(); ++i) {
-      const PosePair& pair = matching.pairs[i];
-      const auto frame = static_cast<double>(pair.frame);
-      curves[0].points.push_back(project(errors.T_truth_estimate * pair.T_world_estimate.translation()));
-      curves[1].points.emplace_back(frame, errors.position_errors_m[i]);
-      if (i == 0) continue;
-      curves[2].points.emplace_back(frame, errors.steps[i - 1].translation_m);
-      curves[3].points.emplace_back(frame, errors.steps[i - 1].rotation_deg);
-    }
-    for (std::size_t i = 0; i < panels.size(); ++i) panels[i].curves.push_back(std::move(curves[i]));
-  }
-  return panels;
-}
-
 void run(const Options& options) {
-  const PoseList truth = read_truth(options);
+  const PoseList truth = read_true_poses(options.truth, options.calibration);
   std::vector<Evaluation> evaluations;
   for (const std::filesystem::path& path : options.estimates)
     evaluations.push_back(evaluate(truth, path, options));
   if (!options.plot.empty())
-    write_file_atomically(options.plot, svg_plot(plot_panels(evaluations, options.plane)));
+    write_file_atomically(
+        options.plot,
+        svg_plot(trajectory_panels(evaluations, options.plane == "xz" ? GroundPlane::xz : GroundPlane::xy)));
   if (!options.json) return print_table(truth, evaluations, options);
   nlohmann::ordered_json json = {{"truth", options.truth.string()},
                                  {"estimates", nlohmann::ordered_json::array()}};

@@ -94,6 +94,8 @@ int run(int argc, char** argv) {
   mlo::apps::add_config(program);
   mlo::apps::add_info(program);
   mlo::apps::add_truth(program);
+  mlo::apps::add_report(program);
+  mlo::apps::add_reproduce(program);
 #ifdef MLO_WITH_SIMULATOR
   mlo::apps::add_simulate(program);
 #endif

@@ -18,7 +18,6 @@ namespace {
 
 // Files with few digits are off by 1e-3; anything beyond this is not a rotation at all.
 constexpr double kRotationTolerance = 1e-2;
-constexpr std::array<std::string_view, 7> kPose{"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"};
 constexpr std::array<std::string_view, 3> kSize{"length_m", "width_m", "height_m"};
 
 // One row, whose cells are asked for by the names of the header.
@@ -65,6 +64,25 @@ class Row {
   std::string where_;
 };
 
+Eigen::Quaterniond parse_rotation(const Row& row, bool upright) {
+  if (upright) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(row.needed_number("yaw_odom_rad"), Eigen::Vector3d::UnitZ()));
+  }
+  const Eigen::Quaterniond rotation(row.needed_number("qw"), row.needed_number("qx"), row.needed_number("qy"),
+                                    row.needed_number("qz"));
+  if (!(std::abs(rotation.norm() - 1.0) < kRotationTolerance)) row.fail("qx, qy, qz, qw are no rotation");
+  return rotation;
+}
+
+// In the map frame, or upright in the odometry frame, as trackers give them.
+SE3 parse_pose(const Row& row) {
+  const bool upright = !row.text("x_m") && row.text("x_odom_m");
+  const auto coordinate = [&](const char* axis) {
+    return row.needed_number(fmt::format("{}{}_m", axis, upright ? "_odom" : ""));
+  };
+  return {parse_rotation(row, upright), {coordinate("x"), coordinate("y"), coordinate("z")}};
+}
+
 ObjectPose parse_row(const Row& row) {
   ObjectPose object;
   object.frame = row.needed_count("frame");
@@ -73,11 +91,7 @@ ObjectPose parse_row(const Row& row) {
   if (const auto type = row.text("class")) object.type = to_lower(*type);
   if (object.type.empty()) row.fail("there is no class");
   object.state = row.text("state").value_or("");
-  std::array<double, kPose.size()> v{};
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = row.needed_number(kPose[i]);
-  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-  if (!(std::abs(rotation.norm() - 1.0) < kRotationTolerance)) row.fail("qx, qy, qz, qw are no rotation");
-  object.T_map_object = SE3(rotation, {v[0], v[1], v[2]});
+  object.T_map_object = parse_pose(row);
   for (std::size_t i = 0; i < kSize.size(); ++i) {
     object.size_lwh_m(static_cast<Eigen::Index>(i)) = row.number(kSize[i]).value_or(0.0);
   }

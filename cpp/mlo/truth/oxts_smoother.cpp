@@ -150,15 +150,18 @@ Matrix15d wide_covariance() {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
+// All of the state but the acceleration is measured.
+Matrix12x15d measurement_matrix() {
+  Matrix12x15d H = Matrix12x15d::Zero();
+  H.block<3, 3>(0, kPlace).setIdentity();
+  H.block<3, 3>(3, kVelocity).setIdentity();
+  H.block<3, 3>(6, kAttitude).setIdentity();
+  H.block<3, 3>(9, kRate).setIdentity();
+  return H;
+}
+
 void update(Node& node, const Measurement& measurement) {
-  static const Matrix12x15d H = [] {
-    Matrix12x15d rows = Matrix12x15d::Zero();
-    rows.block<3, 3>(0, kPlace).setIdentity();
-    rows.block<3, 3>(3, kVelocity).setIdentity();
-    rows.block<3, 3>(6, kAttitude).setIdentity();
-    rows.block<3, 3>(9, kRate).setIdentity();
-    return rows;
-  }();
+  const Matrix12x15d H = measurement_matrix();
   const Matrix15d& P = node.P_predicted;
   const Eigen::Matrix<double, kMeasured, kMeasured> N = measurement.sigma.cwiseAbs2().asDiagonal();
   const Eigen::Matrix<double, kMeasured, kMeasured> S = H * P * H.transpose() + N;
