@@ -138,6 +138,21 @@ TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
   }
 }
 
+TEST(StaticMap, WhatWasHardlySeenGoesWithItsSurroundings) {
+  Percept seen;
+  for (int i = 0; i < 3; ++i)
+    seen.surface.candidates.push_back(at(10.1F, 0.1F + 0.25F * static_cast<float>(i), 0.1F));
+  seen.surface.candidates.push_back(at(10.1F, 0.1F, 0.9F));  // above the rays, in the same cubic metre
+  seen.surface.candidates.push_back(at(10.1F, 0.1F, 2.9F));  // elsewhere
+  StaticMap map({});
+  map.insert(seen, SweepMotion::none(), SE3());
+  std::vector<Point> scan = wall_ahead(20.0F);
+  std::erase_if(scan, [](const Point& point) { return point.p_lidar.z() > 0.06F * point.p_lidar.x(); });
+  map.observe(RangeImage(scan), SweepMotion::none(), SE3());
+  ASSERT_EQ(map.points().size(), 1U);
+  EXPECT_EQ(map.points()[0].p_map.z(), 2.9F);
+}
+
 TEST(StaticMap, WhatIsOutOfReachIsNotVotedOn) {
   Percept seen;
   seen.surface.candidates = {at(10.0F, 0.1F, 0.1F)};

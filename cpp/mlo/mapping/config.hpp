@@ -108,6 +108,7 @@ struct StaticMapConfig {
   double free_space_margin_per_range = 0.005;
   double free_space_hit_votes = 0.7;
   double free_space_max_votes = 8.0;
+  double free_space_sure_votes = 3.0;
   double memory_radius_m = 200.0;
 
   template <class Visitor>
@@ -131,6 +132,10 @@ struct StaticMapConfig {
           "keeps more of what is thin");
     visit("free_space_max_votes", free_space_max_votes, between(1.0, 1000.0),
           "no more votes are kept for or against a point: lower follows changes sooner");
+    visit("free_space_sure_votes", free_space_sure_votes, between(0.0, 1000.0),
+          "points with fewer votes are left out where their surroundings were seen through: higher removes "
+          "more, of "
+          "what stands too");
     visit("memory_radius_m", memory_radius_m, between(50.0, 1e6),
           "what is farther from the robot waits on disk: memory against reading it again on return [m]");
   }

@@ -10,6 +10,14 @@ namespace mlo {
 namespace {
 
 constexpr float kTileM = 20.0F;
+// Where so many points of a block were seen through, those that were hardly seen are taken for part of the
+// same thing that passed.
+constexpr float kBlockM = 1.0F;
+constexpr int kDoubtfulBlock = 3;
+
+VoxelKey block_key(const Eigen::Vector3f& p_map) {
+  return voxel_key(p_map, 1.0F / kBlockM);
+}
 
 VoxelKey tile_key(const Eigen::Vector3f& p_map) {
   VoxelKey key = voxel_key(p_map, 1.0F / kTileM);
@@ -120,12 +128,28 @@ std::size_t StaticMap::size() const {
   return size;
 }
 
+StaticMap::Counts StaticMap::count_seen_through() const {
+  Counts counts;
+  for (const Tile& tile : tiles_) {
+    for (const Entry& entry : entries_of(tile)) {
+      if (is_seen_through(entry)) ++counts[block_key(entry.point.p_map)];
+    }
+  }
+  return counts;
+}
+
 std::vector<MapPoint> StaticMap::points() const {
+  const Counts seen_through = count_seen_through();
+  const auto is_doubtful = [&](const Entry& entry) {
+    if (static_cast<double>(entry.votes) >= config_.free_space_sure_votes) return false;
+    const auto found = seen_through.find(block_key(entry.point.p_map));
+    return found != seen_through.end() && found->second >= kDoubtfulBlock;
+  };
   std::vector<MapPoint> all;
   all.reserve(size());
   for (const Tile& tile : tiles_) {
     for (const Entry& entry : entries_of(tile)) {
-      if (!is_seen_through(entry)) all.push_back(entry.point);
+      if (!is_seen_through(entry) && !is_doubtful(entry)) all.push_back(entry.point);
     }
   }
   return all;

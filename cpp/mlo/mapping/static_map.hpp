@@ -37,7 +37,8 @@ class StaticMap {
 
   /// Voxels with a point, those that were seen through among them.
   std::size_t size() const;
-  /// The points that were not seen through, in an order that depends only on what was inserted and observed.
+  /// The points that were not seen through, without those among them that were hardly seen themselves, in an
+  /// order that depends only on what was inserted and observed.
   std::vector<MapPoint> points() const;
 
  private:
@@ -56,6 +57,9 @@ class StaticMap {
 
   void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
               const SE3& T_map_lidar);
+  /// Points that were seen through in each block of space that has some.
+  using Counts = tsl::robin_map<VoxelKey, int, VoxelKeyHash>;
+  Counts count_seen_through() const;
   Tile& tile_at(const Eigen::Vector3f& p_map);
   void fetch(Tile& tile) const;
   std::vector<Entry> entries_of(const Tile& tile) const;
