@@ -97,6 +97,17 @@ Alignment estimate_increment(const EgoFeatures& features, const ReferenceScan& p
   return align(features, previous, T_start, timing, {}, config);
 }
 
+// True where the features do not constrain every direction, judged by one step. Along an open direction the
+// check's random motions are arbitrary, and standing still agrees best, because scan lines move with the
+// lidar.
+bool leaves_direction_open(const EgoFeatures& features, const ReferenceScan& previous, const SE3& T_start,
+                           const SweepTiming& timing, const OdometryConfig& config) {
+  OdometryConfig one_step = config;
+  one_step.max_matchings = 1;
+  one_step.steps_per_matching = 1;
+  return estimate_increment(features, previous, T_start, timing, one_step).degenerate_directions > 0;
+}
+
 // Where nothing predicts the motion: a search, then an estimate with a kernel as wide as the step of the
 // search. The usual kernel would hold on to the start, or to traffic that moves along.
 SE3 find_start(const EgoFeatures& features, const ReferenceScan& previous, const SweepTiming& timing,
@@ -116,7 +127,8 @@ EgoOdometryResult estimate_ego(const Percept& current, const ReferenceScan& prev
   EgoOdometryResult result;
   EgoFeatures features = select_features(current, config, result);
   SE3 T_start = guess ? *guess : find_start(features, previous, timing, config);
-  if (config.consistency_check && features.size() > 0) {
+  if (config.consistency_check && features.size() > 0 &&
+      !leaves_direction_open(features, previous, T_start, timing, config)) {
     ConsistencyResult checked = check_consistency(features, previous, T_start, timing, config, frame);
     features = std::move(checked.features);
     T_start = checked.T_previous_current;
