@@ -42,6 +42,7 @@ struct ObjectMotionConfig {
   double sideways_speed_mps = 0.4;
   double switch_probability = 0.03;
   double turn_noise_degps2 = 40.0;
+  double velocity_sd_mps = 0.5;
   double height_noise_m = 0.10;
   double size_noise_m = 0.02;
 
@@ -60,6 +61,8 @@ struct ObjectMotionConfig {
           "chance to start or to stop within one scan");
     visit("turn_noise_degps2", turn_noise_degps2, between(0.1, 1000.0),
           "random angular acceleration [deg/s^2]");
+    visit("velocity_sd_mps", velocity_sd_mps, between(0.0, 100.0),
+          "of velocities from points, added to what the estimate says of itself [m/s]");
     visit("height_noise_m", height_noise_m, between(0.0, 10.0),
           "change of the height above the plane in one second [m]");
     visit("size_noise_m", size_noise_m, between(0.0, 10.0),
@@ -148,8 +151,54 @@ struct LifecycleConfig {
   }
 };
 
+/// What the relative motion of an object is estimated from.
+enum class SgfMode {
+  fusion,    ///< points and boxes
+  semantic,  ///< boxes only
+  geometry   ///< points only
+};
+
+/// Estimate of each object's motion from its points and its box (paper, section III-C-2, Eq. (5)-(13)).
+struct SgfConfig {
+  SgfMode mode = SgfMode::fusion;
+  bool centred = true;
+  bool printed_weights = false;
+  double kernel = 3.0;
+  double effective_points = 10.0;
+  double voxel_m = 0.3;
+  int min_points = 10;
+  int max_iterations = 12;
+  double converged_m = 1e-3;
+  int target_scans = 5;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("mode", mode,
+          Choices<SgfMode>{
+              {"fusion", SgfMode::fusion}, {"semantic", SgfMode::semantic}, {"geometry", SgfMode::geometry}},
+          "fusion: points and boxes; semantic: boxes only; geometry: points only");
+    visit("centred", centred, Anything{},
+          "planes of boxes about their centre; false: about the lidar, as printed in Eq. (8), where a yaw "
+          "error grows "
+          "with the range");
+    visit("printed_weights", printed_weights, Anything{},
+          "weights of Eq. (13) as printed; false: both terms in units of their variances");
+    visit("kernel", kernel, between(0.0, 100.0),
+          "residual, in standard deviations, beyond which it loses weight; 0: none, as printed");
+    visit("effective_points", effective_points, between(1.0, 10000.0),
+          "independent points that all of an object's points are worth; more trust points over boxes");
+    visit("voxel_m", voxel_m, between(0.05, 5.0), "side of the voxels that points are matched to [m]");
+    visit("min_points", min_points, between(3, 1000), "matched points that an estimate without box needs");
+    visit("max_iterations", max_iterations, between(1, 100), "of Levenberg-Marquardt");
+    visit("converged_m", converged_m, between(1e-6, 1.0), "step that ends the iterations [m], and in rad");
+    visit("target_scans", target_scans, between(1, 100),
+          "earlier scans whose points are the target, in the object's own frame; 1 is the paper's");
+  }
+};
+
 /// Multi-object tracking (paper, section III-C-2).
 struct TrackingConfig {
+  SgfConfig sgf;
   BoxNoiseConfig box_noise;
   ObjectMotionConfig motion;
   AssociationConfig association;
@@ -157,6 +206,7 @@ struct TrackingConfig {
 
   template <class Visitor>
   void fields(Visitor& visit) {
+    visit.group("sgf", sgf, "Motion of each object from its points and its box.");
     visit.group("box_noise", box_noise, "How far off a detector's boxes are.");
     visit.group("motion", motion, "How objects move.");
     visit.group("association", association, "Which detection continues which track.");

@@ -158,6 +158,26 @@ void ObjectFilter::update_planar(const Eigen::Vector2d& measured_m, const Eigen:
   for (Planar& planar : planar_) planar.probability = std::clamp(planar.probability / sum, 1e-6, 1.0 - 1e-6);
 }
 
+void ObjectFilter::update_velocity(const Eigen::Vector2d& measured_mps, double sd_mps,
+                                   const ObjectMotionConfig& config) {
+  // What estimates say of their own precision leaves out what their models leave out.
+  const double sd = std::hypot(sd_mps, config.velocity_sd_mps);
+  double sum = 0.0;
+  for (Planar& planar : planar_) {
+    const Eigen::Matrix2d S =
+        planar.covariance.bottomRightCorner<2, 2>() + square(sd) * Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d innovation_mps = measured_mps - planar.state.tail<2>();
+    const Eigen::Vector2d weighted = S.inverse() * innovation_mps;
+    const Eigen::Matrix<double, 4, 2> PH = planar.covariance.rightCols<2>();
+    planar.state += PH * weighted;
+    planar.covariance -= PH * S.inverse() * PH.transpose();
+    planar.probability *=
+        std::max(std::exp(-0.5 * innovation_mps.dot(weighted)) / std::sqrt(S.determinant()), 1e-30);
+    sum += planar.probability;
+  }
+  for (Planar& planar : planar_) planar.probability = std::clamp(planar.probability / sum, 1e-6, 1.0 - 1e-6);
+}
+
 void ObjectFilter::forbid_sideways_motion(double sideways_sd_mps) {
   Planar& moving = planar_[kMoving];
   const double speed = moving.state.tail<2>().norm();

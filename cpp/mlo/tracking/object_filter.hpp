@@ -43,6 +43,9 @@ class ObjectFilter {
   /// round; the estimate itself turns round when most measurements say so, or when it moves backwards.
   void update(const BoxMeasurement& measurement, const ObjectMotionConfig& config);
 
+  /// A velocity that was measured besides the boxes, with the standard deviation of each component.
+  void update_velocity(const Eigen::Vector2d& measured_mps, double sd_mps, const ObjectMotionConfig& config);
+
   /// What sets this object and a measurement apart.
   struct Distance {
     double position = 0.0;  ///< squared distance in the plane over its variance (the likelier model's)

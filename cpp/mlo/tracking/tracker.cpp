@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mlo/core/parallel.hpp"
 #include "mlo/tracking/ego_from_boxes.hpp"
 #include "mlo/tracking/visibility.hpp"
 
@@ -19,6 +20,12 @@ bool is_usable(const Detection& detection) {
 
 bool is_wheeled(ObjectClass object_class) {
   return object_class != ObjectClass::pedestrian && object_class != ObjectClass::other;
+}
+
+Box3d box_at(const SE3& T_odom_object, const Eigen::Vector3d& size_lwh_m, const SE3& T_odom_lidar) {
+  const Eigen::Vector3d heading = T_odom_object.rotation() * Eigen::Vector3d::UnitX();
+  return in_lidar({T_odom_object.translation(), size_lwh_m, std::atan2(heading.y(), heading.x())},
+                  T_odom_lidar);
 }
 
 double field_of_view_rad(const LifecycleConfig& config) {
@@ -45,7 +52,8 @@ std::vector<TrackedObject> Tracker::process(std::span<const Detection> detection
                                             double dt_s) {
   T_odom_lidar_ = T_odom_lidar;
   for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
-  return commit(observe(detections, T_odom_lidar));
+  commit(observe(detections, T_odom_lidar));
+  return describe_all();
 }
 
 std::vector<TrackedObject> Tracker::process(std::span<const Detection> detections, double dt_s) {
@@ -54,7 +62,8 @@ std::vector<TrackedObject> Tracker::process(std::span<const Detection> detection
   if (started_) last_increment_ = T_odom_lidar_.inverse() * T_odom_lidar;
   T_odom_lidar_ = T_odom_lidar;
   started_ = true;
-  return commit(observe(detections, T_odom_lidar));
+  commit(observe(detections, T_odom_lidar));
+  return describe_all();
 }
 
 SE3 Tracker::estimate_pose(std::span<const Detection> detections) const {
@@ -85,9 +94,54 @@ SE3 Tracker::estimate_pose(std::span<const Detection> detections) const {
   return T_odom_lidar;
 }
 
-std::vector<TrackedObject> Tracker::commit(std::vector<Observation> observations) {
+std::vector<TrackedObject> Tracker::process(std::span<const ObjectPoints> objects, const SE3& T_odom_lidar,
+                                            double dt_s, const SweepTiming& timing) {
+  T_odom_lidar_ = T_odom_lidar;
+  for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
+  std::vector<Detection> detections;
+  for (const ObjectPoints& object : objects) detections.push_back(object.detection);
+  commit(observe(detections, T_odom_lidar));
+  parallel_for_each_index(tracks_.size(), [&](std::size_t i) {
+    if (tracks_[i].detection) update_odometry(tracks_[i], objects[*tracks_[i].detection], dt_s, timing);
+  });
+  return describe_all();
+}
+
+void Tracker::update_odometry(Track& track, const ObjectPoints& object, double dt_s,
+                              const SweepTiming& timing) {
+  track.num_points = object.points.size();
+  const ObjectSighting sighting{.points = object.points,
+                                .measurement = measure(object.detection, T_odom_lidar_, config_.box_noise),
+                                .confidence = std::clamp(object.detection.confidence, 0.0, 1.0),
+                                .T_odom_lidar = T_odom_lidar_};
+  if (!track.odometry) {
+    track.odometry.emplace(sighting, timing, config_.sgf);
+    return;
+  }
+  const PlacedBox box = track.filter.box();
+  const SE3 before = track.odometry->T_odom_object();
+  const int scans_since = track.misses_before + 1;
+  track.relative_motion =
+      track.odometry->update(sighting, box.T_odom_object(), box.size_lwh_m, scans_since, timing, config_.sgf);
+  const SE3& now = track.odometry->T_odom_object();
+  if (track.relative_motion.usable() && dt_s > 0.0) {
+    const Eigen::Vector3d velocity_mps = (now.translation() - before.translation()) / (dt_s * scans_since);
+    const double variance = track.relative_motion.covariance.topLeftCorner<2, 2>().trace();
+    track.filter.update_velocity(velocity_mps.head<2>(), std::sqrt(variance) / (dt_s * scans_since),
+                                 config_.motion);
+  }
+  const Eigen::Vector3d heading = now.rotation() * Eigen::Vector3d::UnitX();
+  if (heading.head<2>().dot(Eigen::Vector2d(std::cos(box.yaw_rad), std::sin(box.yaw_rad))) < 0.0) {
+    track.odometry->turn_round();
+  }
+}
+
+void Tracker::commit(std::vector<Observation> observations) {
   for (Track& track : tracks_) {
     track.detection.reset();
+    track.misses_before = track.misses;
+    track.num_points = 0;
+    track.relative_motion = {};
     ++track.age;
     ++track.misses;
   }
@@ -96,6 +150,9 @@ std::vector<TrackedObject> Tracker::commit(std::vector<Observation> observations
   miss_unmatched();
   begin_tracks(std::move(observations));
   end_tracks();
+}
+
+std::vector<TrackedObject> Tracker::describe_all() const {
   std::vector<TrackedObject> objects;
   for (const Track& track : tracks_) objects.push_back(describe(track));
   return objects;
@@ -195,7 +252,13 @@ TrackedObject Tracker::describe(const Track& track) const {
                        .age = track.age,
                        .hits = track.hits,
                        .misses = track.misses,
-                       .detection = track.detection};
+                       .detection = track.detection,
+                       .num_points = track.num_points,
+                       .relative_motion = track.relative_motion};
+  if (track.odometry && track.detection) {
+    object.T_odom_object = track.odometry->T_odom_object();
+    object.box = box_at(object.T_odom_object, placed.size_lwh_m, T_odom_lidar_);
+  }
   const double sd_m = std::sqrt(object.planar_covariance.topLeftCorner<2, 2>().trace());
   const bool shown_without_detection = sd_m <= config_.lifecycle.max_report_sd_m &&
                                        in_field_of_view(object.box, field_of_view_rad(config_.lifecycle));

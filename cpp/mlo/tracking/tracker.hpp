@@ -6,11 +6,15 @@
 #include <vector>
 
 #include "mlo/core/box.hpp"
+#include "mlo/core/ego_motion.hpp"
+#include "mlo/core/features.hpp"
 #include "mlo/core/se3.hpp"
+#include "mlo/core/sweep_motion.hpp"
 #include "mlo/tracking/association.hpp"
 #include "mlo/tracking/config.hpp"
 #include "mlo/tracking/lifecycle.hpp"
 #include "mlo/tracking/object_filter.hpp"
+#include "mlo/tracking/object_odometry.hpp"
 #include "mlo/tracking/placed_box.hpp"
 
 namespace mlo {
@@ -34,6 +38,9 @@ struct TrackedObject {
   int hits = 0;
   int misses = 0;                        ///< in a row
   std::optional<std::size_t> detection;  ///< index of this scan's detection; nothing when predicted
+  std::size_t num_points = 0;            ///< in this scan's box
+  /// Estimate of H in this scan, from the last one in which the object was seen; "not run" without points.
+  PoseEstimate relative_motion;
 };
 
 /// Follows boxes from scan to scan (paper, section III-C-2), on line: the result of a scan depends on it and
@@ -53,6 +60,12 @@ class Tracker {
   /// which most stand or move along with others (ego_from_boxes.hpp).
   std::vector<TrackedObject> process(std::span<const Detection> detections, double dt_s);
 
+  /// The same with the objects' points: the pose of each is then accumulated from its motions by
+  /// semantic-geometric fusion (paper, section III-C-2 and -3), which also tell its velocity. Objects run in
+  /// parallel; the result does not depend on the number of threads.
+  std::vector<TrackedObject> process(std::span<const ObjectPoints> objects, const SE3& T_odom_lidar,
+                                     double dt_s, const SweepTiming& timing);
+
   /// Pose of the lidar at the last scan, as given or estimated.
   const SE3& T_odom_lidar() const { return T_odom_lidar_; }
 
@@ -67,6 +80,10 @@ class Tracker {
     int hits = 1;
     int misses = 0;
     std::optional<std::size_t> detection;
+    int misses_before = 0;  ///< in a row, before this scan
+    std::size_t num_points = 0;
+    std::optional<ObjectOdometry> odometry = {};
+    PoseEstimate relative_motion = {};
   };
 
   /// Detections as the tracks see them; index leads to the span that was given.
@@ -81,7 +98,9 @@ class Tracker {
 
   std::vector<Observation> observe(std::span<const Detection> detections, const SE3& T_odom_lidar) const;
   SE3 estimate_pose(std::span<const Detection> detections) const;
-  std::vector<TrackedObject> commit(std::vector<Observation> observations);
+  void commit(std::vector<Observation> observations);
+  void update_odometry(Track& track, const ObjectPoints& object, double dt_s, const SweepTiming& timing);
+  std::vector<TrackedObject> describe_all() const;
   void associate_and_update(std::vector<Observation>& observations, bool high_confidence);
   void miss_unmatched();
   void begin_tracks(std::vector<Observation> observations);

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "mlo/core/ego_motion.hpp"
+#include "mlo/core/se3.hpp"
+#include "mlo/core/sweep_motion.hpp"
+#include "mlo/core/types.hpp"
+#include "mlo/tracking/config.hpp"
+#include "mlo/tracking/object_filter.hpp"
+#include "mlo/tracking/sgf_residuals.hpp"
+
+namespace mlo {
+
+/// Absolute object motion in the lidar frame at the previous reference time, Eq. (14): X = delta * H^-1.
+SE3 absolute_motion(const SE3& delta, const SE3& H);
+/// The same in the object's own frame, Eq. (15): L^-1 * X * L.
+SE3 body_fixed_motion(const SE3& L_lidar_object, const SE3& X);
+
+/// What one scan has of an object.
+struct ObjectSighting {
+  std::span<const Point> points;  ///< as measured
+  BoxMeasurement measurement;     ///< its box in the odometry frame, with noise
+  double confidence = 1.0;
+  SE3 T_odom_lidar;
+};
+
+/// Pose of one object by accumulated body-fixed motions (paper, section III-C-3), each estimated from points
+/// and boxes of the last sighting and the present one.
+class ObjectOdometry {
+ public:
+  /// The first pose is that of the box.
+  ObjectOdometry(const ObjectSighting& first, const SweepTiming& timing, const SgfConfig& config);
+
+  /// Continues by one sighting.
+  /// @param T_odom_object_guess  where the object should be by other means; its heading may be flipped
+  /// @param size_lwh_m           what is known of its size by now
+  /// @param scans_since          1 when it was seen in the scan before
+  /// @return T_target_source is the relative motion H since the last sighting; when it is not usable, the
+  /// guess counts
+  PoseEstimate update(const ObjectSighting& sighting, const SE3& T_odom_object_guess,
+                      const Eigen::Vector3d& size_lwh_m, int scans_since, const SweepTiming& timing,
+                      const SgfConfig& config);
+
+  /// At the last sighting.
+  const SE3& T_odom_object() const { return T_odom_object_; }
+  /// Front becomes back.
+  void turn_round();
+
+ private:
+  std::vector<ShapedPoint> shape(const ObjectSighting& sighting, int scans_since,
+                                 const SweepTiming& timing) const;
+  void remember(std::vector<ShapedPoint> points, const SE3& H, const SE3& L_lidar_object,
+                const SgfConfig& config);
+  ObjectTarget target(const SE3& L_lidar_object, const SgfConfig& config) const;
+
+  SE3 T_odom_object_;
+  SE3 T_odom_lidar_;                                    ///< at the last sighting
+  Box3d last_box_lidar_;                                ///< the detector's, at the last sighting
+  std::deque<std::vector<ShapedPoint>> points_object_;  ///< of earlier sightings, in the object's frame
+};
+
+}  // namespace mlo
