@@ -110,7 +110,7 @@ SequenceSummary track_sequence(const Options& options, const std::string& sequen
 
   for (const char* name : {"tracks", "objects"}) fs::create_directories(options.out / name);
   if (view) write_kitti_tracks(options.out / "tracks" / (sequence + ".txt"), kitti_records(frames, *view));
-  write_objects_csv(options.out / "objects" / (sequence + ".csv"), frames);
+  write_object_table(options.out / "objects" / (sequence + ".csv"), frames);
   write_object_trajectories(options.out / "trajectories" / sequence, frames);
   return {frames.size(), detections.count(), seconds.count()};
 }

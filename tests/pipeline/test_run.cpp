@@ -261,6 +261,8 @@ TEST(Run, DetectionsAreCountedAndCutOut) {
   EXPECT_EQ(summary.detections, 4U);
   const nlohmann::json report = nlohmann::json::parse(test::read_bytes(out / "run.json"));
   EXPECT_EQ(report.at("detections"), 4);
+  EXPECT_TRUE(std::filesystem::exists(out / "objects.csv"));
+  EXPECT_TRUE(std::filesystem::exists(out / "object_trajectories"));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(TrackDetections, RecordsAreThoseInTheImage) {
 TEST(TrackDetections, WritesRowsAndTrajectories) {
   const test::TempFolder folder;
   const auto frames = track_detections(driving_car(12), standing_lidar(12), kInterval_s, {});
-  write_objects_csv(folder.path() / "objects.csv", frames);
+  write_object_table(folder.path() / "objects.csv", frames);
   write_object_trajectories(folder.path() / "trajectories", frames);
   const PoseList poses = read_trajectory(folder.path() / "trajectories" / "00001.txt");
   ASSERT_GT(poses.T_world_body.size(), 5U);

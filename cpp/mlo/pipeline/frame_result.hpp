@@ -4,18 +4,20 @@
 #include <chrono>
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "mlo/core/ego_motion.hpp"
 #include "mlo/core/se3.hpp"
 #include "mlo/odometry/consistency_check.hpp"
+#include "mlo/tracking/tracker.hpp"
 
 namespace mlo {
 
 /// The steps of a scan, in order.
-enum class Stage { prepare, perception, odometry, refinement, map_update };
-inline constexpr std::size_t kNumStages = 5;
-inline constexpr std::array<std::string_view, kNumStages> kStageNames{"prepare", "perception", "odometry",
-                                                                      "refinement", "map_update"};
+enum class Stage { prepare, perception, odometry, tracking, refinement, map_update };
+inline constexpr std::size_t kNumStages = 6;
+inline constexpr std::array<std::string_view, kNumStages> kStageNames{"prepare",  "perception", "odometry",
+                                                                      "tracking", "refinement", "map_update"};
 
 /// Wall time per stage [ms].
 struct StageTimes {
@@ -62,12 +64,14 @@ struct PerceptCounts {
 struct FrameResult {
   std::size_t frame = 0;
   double stamp_s = 0.0;
-  SE3 T_odom_lidar;  ///< T_ol: accumulated scan-to-scan odometry, at the stamp
-  SE3 T_map_lidar;   ///< T_ml: after map refinement, at the stamp
+  SE3 T_odom_lidar;         ///< T_ol: accumulated scan-to-scan odometry, at the stamp
+  SE3 T_map_lidar;          ///< T_ml: after map refinement, at the stamp
   bool first = false;       ///< the first scan defines both frames
   PoseEstimate odometry;    ///< increment T_previous_current
   PoseEstimate refinement;  ///< T_map_lidar at the reference time of the sweep
   ConsistencyReport consistency;
+  std::vector<TrackedObject>
+      objects;  ///< all tracks that live, in the odometry frame; none without detections
   PerceptCounts counts;
   StageTimes times;
 

@@ -74,7 +74,8 @@ Pipeline::Pipeline(const PipelineConfig& config)
     : config_(config),
       local_maps_{LocalMap(config.mapping.local_map), LocalMap(config.mapping.local_map),
                   LocalMap(config.mapping.local_map)},
-      static_map_(config.mapping.static_map) {}
+      static_map_(config.mapping.static_map),
+      tracker_(config.tracking) {}
 
 FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detections) {
   FrameResult result;
@@ -97,6 +98,7 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
   result.first = state_.empty;
   result.odometry = ego.increment;
   result.consistency = ego.consistency;
+  result.objects = timed(times, Stage::tracking, [&] { return track(prepared, seen, T_odometry, sweep); });
   const bool motion_known = state_.motion_known || ego.increment.usable();
   result.refinement =
       timed(times, Stage::refinement, [&] { return refine_pose(seen, T_start, motion_known, sweep); });
@@ -127,6 +129,12 @@ EgoOdometryResult Pipeline::estimate_increment(const Percept& seen, const SE3& p
   if (state_.empty || !config_.odometry.enabled) return {};
   const std::optional<SE3> guess = state_.motion_known ? std::optional(prediction) : std::nullopt;
   return estimate_ego(seen, state_.reference, guess, timing, config_.odometry, frame);
+}
+
+std::vector<TrackedObject> Pipeline::track(const Scan& scan, const Percept& seen, const SE3& T_odometry,
+                                           const SweepTiming& timing) {
+  const double dt_s = state_.empty ? 0.0 : std::max(0.0, scan.stamp_s - state_.stamp_s);
+  return tracker_.process(seen.objects, state_.T_odom_lidar * T_odometry, dt_s, timing);
 }
 
 PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,

@@ -13,6 +13,7 @@
 #include "mlo/odometry/two_step_ego.hpp"
 #include "mlo/pipeline/config.hpp"
 #include "mlo/pipeline/frame_result.hpp"
+#include "mlo/tracking/tracker.hpp"
 
 namespace mlo {
 
@@ -56,6 +57,8 @@ class Pipeline {
                                        std::size_t frame) const;
   PoseEstimate refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
                            const SweepTiming& timing);
+  std::vector<TrackedObject> track(const Scan& scan, const Percept& seen, const SE3& T_odometry,
+                                   const SweepTiming& timing);
   void clear_maps();
   void clear_local_maps();
   bool local_maps_are_empty() const;
@@ -69,6 +72,7 @@ class Pipeline {
   State state_;
   LocalMaps local_maps_;
   StaticMap static_map_;
+  Tracker tracker_;
 };
 
 }  // namespace mlo

@@ -92,7 +92,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
   summary.warnings = dataset.warnings;
   if (detections) warn_of_strange_boxes(dataset, indices, *detections, summary);
 
-  RunOutput output(options.out, dataset.calibration.T_camera0_lidar);
+  RunOutput output(options.out, dataset.calibration.T_camera0_lidar, detections.has_value());
   write_file_atomically(options.out / "config.yaml", to_yaml(config));
   Pipeline pipeline(config);
   std::optional<Eigen::Vector3d> last_position;
@@ -134,6 +134,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
   }
   const std::vector<MapPoint> map = pipeline.static_map().points();
   output.write_map(map);
+  output.write_object_trajectories();
   summary.map_points = map.size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",

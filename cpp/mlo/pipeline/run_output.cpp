@@ -1,8 +1,8 @@
 #include "mlo/pipeline/run_output.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
 #include "mlo/io/point_cloud_file.hpp"
@@ -60,7 +60,8 @@ void RunOutput::TextFile::write_row(const std::string& row) {
   }
 }
 
-RunOutput::RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar)
+RunOutput::RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar,
+                     bool with_objects)
     : folder_(create_folder(folder)),
       T_camera_lidar_(T_camera_lidar),
       trajectory_(folder / "trajectory.txt"),
@@ -71,6 +72,9 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const std::optional<SE
   std::string header(kPerScanHeader);
   for (const std::string_view stage : kStageNames) header += fmt::format(",{}_ms", stage);
   per_scan_.write_row(header + ",problem");
+  if (!with_objects) return;
+  objects_.emplace(folder / "objects.csv");
+  objects_->write_row(object_table_header());
 }
 
 void RunOutput::write_poses(const SE3& T_map_lidar, const SE3& T_odom_lidar) {
@@ -85,6 +89,20 @@ void RunOutput::write(const FrameResult& result) {
   write_poses(result.T_map_lidar, result.T_odom_lidar);
   trajectory_tum_.write_row(tum_row(result.stamp_s, result.T_map_lidar));
   per_scan_.write_row(per_scan_row(result));
+  if (objects_) write_objects(result);
+}
+
+void RunOutput::write_objects(const FrameResult& result) {
+  const ObjectRow place{result.frame, result.stamp_s, result.T_map_lidar * result.T_odom_lidar.inverse()};
+  for (const TrackedObject& object : result.objects) {
+    if (!object.reported) continue;
+    objects_->write_row(object_table_row(place, object));
+    object_trajectories_.add(place, object);
+  }
+}
+
+void RunOutput::write_object_trajectories() const {
+  if (objects_) object_trajectories_.write(folder_ / "object_trajectories");
 }
 
 void RunOutput::write_skipped(std::size_t frame, const std::string& problem,

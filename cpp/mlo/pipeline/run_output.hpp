@@ -8,6 +8,7 @@
 
 #include "mlo/core/types.hpp"
 #include "mlo/pipeline/frame_result.hpp"
+#include "mlo/pipeline/object_table.hpp"
 
 namespace mlo {
 
@@ -17,19 +18,24 @@ class RunOutput {
   /// Creates the folder and the files in it; files of an earlier run are replaced.
   /// @param T_camera_lidar  where known, trajectory_camera.txt is written too
   /// @throws InputError when the folder or a file cannot be written
-  RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar);
+  /// @param with_objects    objects.csv is written too
+  RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar, bool with_objects);
 
   /// trajectory.txt, trajectory_tum.txt, odometry.txt, trajectory_camera.txt and a row of per_scan.csv.
   /// @throws InputError when the disk is full
   void write(const FrameResult& result);
-  /// For a scan that could not be used: a row of per_scan.csv with the problem, and the predicted poses in the
-  /// files whose row numbers are frame numbers (not in trajectory_tum.txt).
+  /// For a scan that could not be used: a row of per_scan.csv with the problem, and the predicted poses in
+  /// the files whose row numbers are frame numbers (not in trajectory_tum.txt).
   void write_skipped(std::size_t frame, const std::string& problem, const PredictedPoses& predicted);
+
+  /// object_trajectories/ID.txt, of all objects that were reported.
+  void write_object_trajectories() const;
 
   /// static_map.ply and static_map.pcd.
   void write_map(std::span<const MapPoint> points) const;
 
  private:
+  void write_objects(const FrameResult& result);
   void write_poses(const SE3& T_map_lidar, const SE3& T_odom_lidar);
 
   /// A text file that is flushed after each row, so that errors surface at the row that met them.
@@ -48,6 +54,8 @@ class RunOutput {
   TextFile odometry_;
   TextFile per_scan_;
   std::optional<TextFile> trajectory_camera_;
+  std::optional<TextFile> objects_;
+  ObjectTrajectories object_trajectories_;
 };
 
 }  // namespace mlo

@@ -10,7 +10,7 @@
 #include "mlo/io/atomic_file.hpp"
 #include "mlo/io/kitti_box.hpp"
 #include "mlo/io/kitti_tracks.hpp"
-#include "mlo/io/trajectory_file.hpp"
+#include "mlo/pipeline/object_table.hpp"
 
 namespace mlo {
 namespace {
@@ -32,22 +32,6 @@ std::size_t frame_count(const DetectionList& list, double scan_interval_s) {
   if (!list.by_frame.empty()) return list.by_frame.rbegin()->first + 1;
   if (list.by_stamp_s.empty()) return 0;
   return static_cast<std::size_t>(std::lround(list.by_stamp_s.rbegin()->first / scan_interval_s)) + 1;
-}
-
-std::string csv_row(const FrameTracks& frame, const TrackedObject& object) {
-  const Eigen::Vector3d& p = object.T_odom_object.translation();
-  const Eigen::Vector3d rotation = so3_log(object.T_odom_object.rotation());
-  const Eigen::Vector4d sd = object.planar_covariance.diagonal().cwiseSqrt();
-  const Box3d& box = object.box;
-  return fmt::format(
-      "{},{:.6f},{},{},{},{:.4f},{:.4f},{:.4f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}"
-      ","
-      "{:.3f},{:.3f},{:.3f},{:.4f},{:.4f},{:.4f},{:.5f},{:.2f},{},{}\n",
-      frame.frame, frame.stamp_s, object.id, to_string(object.object_class), to_string(object.state), p.x(),
-      p.y(), p.z(), rotation.z(), object.velocity_odom_mps.x(), object.velocity_odom_mps.y(),
-      object.turn_rate_radps, object.moving_probability, sd(0), sd(1), sd(2), sd(3), box.size_lwh_m.x(),
-      box.size_lwh_m.y(), box.size_lwh_m.z(), box.center_lidar_m.x(), box.center_lidar_m.y(),
-      box.center_lidar_m.z(), box.yaw_rad, object.existence, object.hits, object.misses);
 }
 
 }  // namespace
@@ -107,34 +91,24 @@ std::vector<ObjectRecord> kitti_records(std::span<const FrameTracks> frames, con
   return records;
 }
 
-void write_objects_csv(const std::filesystem::path& path, std::span<const FrameTracks> frames) {
-  std::string text =
-      "frame,stamp_s,id,class,state,x_odom_m,y_odom_m,z_odom_m,yaw_odom_rad,vx_odom_mps,vy_odom_mps,turn_"
-      "rate_radps,"
-      "moving_probability,sd_x_m,sd_y_m,sd_vx_mps,sd_vy_mps,length_m,width_m,height_m,x_lidar_m,y_lidar_m,z_"
-      "lidar_m,"
-      "yaw_lidar_rad,existence,hits,misses\n";
+void write_object_table(const std::filesystem::path& path, std::span<const FrameTracks> frames) {
+  std::string text = object_table_header() + "\n";
   for (const FrameTracks& frame : frames) {
     for (const TrackedObject& object : frame.objects) {
-      if (object.reported) text += csv_row(frame, object);
+      if (object.reported) text += object_table_row({frame.frame, frame.stamp_s, SE3()}, object) + "\n";
     }
   }
   write_file_atomically(path, text);
 }
 
 void write_object_trajectories(const std::filesystem::path& folder, std::span<const FrameTracks> frames) {
-  std::map<long, PoseList> trajectories;
+  ObjectTrajectories trajectories;
   for (const FrameTracks& frame : frames) {
     for (const TrackedObject& object : frame.objects) {
-      if (!object.reported) continue;
-      PoseList& poses = trajectories[object.id];
-      poses.frames.push_back(frame.frame);
-      poses.stamps_s.push_back(frame.stamp_s);
-      poses.T_world_body.push_back(object.T_odom_object);
+      if (object.reported) trajectories.add({frame.frame, frame.stamp_s, SE3()}, object);
     }
   }
-  std::filesystem::create_directories(folder);
-  for (const auto& [id, poses] : trajectories) write_tum_poses(folder / fmt::format("{:05}.txt", id), poses);
+  trajectories.write(folder);
 }
 
 }  // namespace mlo

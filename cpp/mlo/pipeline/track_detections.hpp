@@ -42,11 +42,9 @@ struct CameraView {
 /// The reported tracks as the KITTI tracking benchmark has them: those in the image, with their projections.
 std::vector<ObjectRecord> kitti_records(std::span<const FrameTracks> frames, const CameraView& view);
 
-/// One row per reported track and frame: frame, stamp, id, class, state, pose in the odometry frame,
-/// velocity, turn rate, standard deviations, size, box in the lidar frame, existence, hits, misses
-/// (docs/tracking.md).
+/// objects.csv (object_table.hpp) of the reported tracks; the map frame is that of the poses.
 /// @throws InputError when the file cannot be written
-void write_objects_csv(const std::filesystem::path& path, std::span<const FrameTracks> frames);
+void write_object_table(const std::filesystem::path& path, std::span<const FrameTracks> frames);
 
 /// A TUM file (NNNNN.txt) per track that was reported, of its poses in the odometry frame.
 /// @throws InputError when one cannot be written
