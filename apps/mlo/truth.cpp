@@ -10,7 +10,6 @@
 #include "apps/mlo/commands.hpp"
 #include "apps/mlo/progress.hpp"
 #include "mlo/core/error.hpp"
-#include "mlo/io/kitti_tracks.hpp"
 #include "mlo/io/object_file.hpp"
 #include "mlo/io/trajectory_file.hpp"
 #include "mlo/truth/drive_check.hpp"
@@ -27,16 +26,6 @@ struct Options {
   OxtsSmootherOptions smoother;
   bool check = false;
 };
-
-/// Labels of the tracking benchmark, or tracklets of a raw drive; empty where there are neither.
-std::vector<ObjectBox> annotated_boxes(const Dataset& dataset) {
-  if (!dataset.labels.empty() && dataset.calibration.T_camera0_lidar) {
-    return boxes_in_lidar(read_kitti_tracks(dataset.labels), *dataset.calibration.T_camera0_lidar);
-  }
-  const std::filesystem::path tracklets = dataset.root / "tracklet_labels.xml";
-  if (std::filesystem::exists(tracklets)) return read_tracklets(tracklets);
-  return {};
-}
 
 void write(const Options& options, const DriveTruth& truth, const std::vector<ObjectPose>& objects) {
   std::filesystem::create_directories(options.out);

@@ -32,6 +32,13 @@ TEST(FindData, FindsTheThreeBenchmarks) {
   EXPECT_EQ(data.car_detections, folder.path() / "tracking/training/detections/pointrcnn_car");
 }
 
+TEST(FindData, DrivesHaveTheNumbersOfTheirTrackingSequences) {
+  EXPECT_EQ(tracking_sequence_of("0926-0005"), "0000");
+  EXPECT_EQ(tracking_sequence_of("0926-0018"), "0006");
+  EXPECT_EQ(tracking_sequence_of("0926-0084"), std::nullopt);  // not part of the benchmark's training
+  EXPECT_EQ(tracking_sequence_of("0929-0005"), std::nullopt);  // another day
+}
+
 TEST(FindData, NothingInAnEmptyFolder) {
   const test::TempFolder folder;
   const KittiData data = find_kitti(folder.path());

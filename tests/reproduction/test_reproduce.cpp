@@ -92,6 +92,53 @@ TEST(Reproduce, StoppedRunsAreDoneAgain) {
   EXPECT_EQ(scans, 2U * 6U);
 }
 
+PaperTable object_table(const std::vector<std::string>& rows) {
+  PaperTable table = table_of(paper_tables(), "Table IV");
+  const PaperRow shape = table.rows.front();
+  table.rows.clear();
+  for (const std::string& name : rows) table.rows.push_back({.name = name, .values = shape.values});
+  return table;
+}
+
+TEST(Reproduce, MeasuresObjectsInThreeModes) {
+  const auto data = test::real_data();
+  if (!data) GTEST_SKIP() << test::kNoRealData;
+  const test::TempFolder folder;
+  const ReproduceOptions options{.out = folder.path(), .last_frame = 20};
+  std::size_t scans = 0;
+  ReproduceProgress progress = silent();
+  progress.on_scan = [&](std::size_t, std::size_t) { ++scans; };
+  // The cyclist and the van that ride ahead of the lidar, and an object that comes later.
+  const ReproducedTable result = reproduce_table(object_table({"0926-0005 1", "0926-0005 0", "0926-0005 14"}),
+                                                 find_kitti(*data), options, progress);
+  EXPECT_EQ(scans, 3U * 21U);  // three modes, once for all objects of the drive
+  EXPECT_THAT(result.missing, testing::ElementsAre("0926-0005 14"));
+  ASSERT_EQ(result.titles.size(), 3U);
+  for (const double ate_m : {result.rows[1].here[0][0].value(), result.rows[1].here[1][0].value(),
+                             result.rows[1].here[2][0].value()}) {
+    EXPECT_GT(ate_m, 0.0);
+    EXPECT_LT(ate_m, 0.5);
+  }
+  EXPECT_NE(result.rows[1].here[0], result.rows[1].here[1]);  // geometry is not semantic
+  EXPECT_NE(result.rows[1].here[1], result.rows[1].here[2]);
+  EXPECT_FALSE(result.rows[0].here[0][0]);  // no cyclists among the boxes: lost
+  EXPECT_THAT(result.rows[0].note, HasSubstr("labelled in 21 scans"));
+}
+
+TEST(Reproduce, SaysWhatAnObjectLacks) {
+  const auto data = test::real_data();
+  if (!data) GTEST_SKIP() << test::kNoRealData;
+  const test::TempFolder folder;
+  KittiData found = find_kitti(*data);
+  found.car_detections.reset();
+  const ReproduceOptions options{.out = folder.path()};
+  const ReproducedTable result =
+      reproduce_table(object_table({"0926-0005 0", "0926-0084 14"}), found, options, silent());
+  EXPECT_EQ(result.missing.size(), 2U);
+  EXPECT_THAT(result.rows[0].note, HasSubstr("no detections"));
+  EXPECT_THAT(result.rows[1].note, HasSubstr("data missing"));
+}
+
 TEST(Reproduce, ScoresTheTenSequences) {
   const auto data = test::real_data();
   if (!data) GTEST_SKIP() << test::kNoRealData;

@@ -42,6 +42,15 @@ std::optional<std::string> paper_name_of_drive(const std::string& folder_name) {
   return folder_name.substr(5, 2) + folder_name.substr(8, 2) + "-" + folder_name.substr(17, 4);
 }
 
+std::optional<std::string> tracking_sequence_of(const std::string& drive) {
+  static const std::map<std::string, std::string> kSequences{
+      {"0926-0005", "0000"}, {"0926-0009", "0001"}, {"0926-0011", "0002"}, {"0926-0013", "0003"},
+      {"0926-0014", "0004"}, {"0926-0015", "0005"}, {"0926-0018", "0006"}, {"0926-0022", "0007"},
+      {"0926-0032", "0008"}, {"0926-0036", "0009"}, {"0926-0056", "0010"}, {"0926-0059", "0011"}};
+  const auto found = kSequences.find(drive);
+  return found == kSequences.end() ? std::nullopt : std::optional(found->second);
+}
+
 KittiData find_kitti(const fs::path& root) {
   KittiData data;
   for (const fs::path& folder : candidates_below(root)) {

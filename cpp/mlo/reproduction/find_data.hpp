@@ -22,4 +22,8 @@ KittiData find_kitti(const std::filesystem::path& root);
 /// "2011_09_26_drive_0005_sync" is "0926-0005"; nothing for other names.
 std::optional<std::string> paper_name_of_drive(const std::string& folder_name);
 
+/// The sequence of the tracking benchmark's training part that a drive became: "0926-0005" is "0000"; nothing
+/// for drives that are not in it.
+std::optional<std::string> tracking_sequence_of(const std::string& drive);
+
 }  // namespace mlo

@@ -1,13 +1,11 @@
 #include "mlo/reproduction/reproduce.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "mlo/core/error.hpp"
 #include "mlo/evaluation/trajectory_error.hpp"
-#include "mlo/io/text.hpp"
 #include "mlo/io/trajectory_file.hpp"
-#include "mlo/pipeline/run.hpp"
+#include "mlo/reproduction/object_rows.hpp"
+#include "mlo/reproduction/runs.hpp"
 #include "mlo/reproduction/tracking_runs.hpp"
 #include "mlo/truth/drive_truth.hpp"
 
@@ -18,39 +16,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOdometry = "kitti_odometry";
 constexpr const char* kTableOfEgoErrors[] = {"Table I", "Table II"};
-constexpr const char* kNeedsTracking = "needs tracking in runs";
+constexpr const char* kTableOfObjects = "Table IV";
 
 bool has_ego_errors(const PaperTable& table) {
   return table.name == kTableOfEgoErrors[0] || table.name == kTableOfEgoErrors[1];
-}
-
-std::size_t scans_up_to(const Dataset& dataset, std::size_t last_frame) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < dataset.scans->size(); ++i)
-    count += dataset.scans->frame(i) <= last_frame ? 1 : 0;
-  return count;
-}
-
-// A run that was ended early, had other scans, or is of another version, is done again.
-bool is_finished(const fs::path& folder, std::size_t scans) {
-  const fs::path file = folder / "run.json";
-  if (!fs::exists(file)) return false;
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
-  return json.is_object() && !json.value("interrupted", true) && json.value("version", "") == MLO_VERSION &&
-         json.value("scans", std::size_t{0}) == scans;
-}
-
-// False if it was stopped.
-bool run_unless_finished(const Dataset& dataset, const Variant& variant, const fs::path& folder,
-                         const ReproduceOptions& options, const ReproduceProgress& progress) {
-  if (is_finished(folder, scans_up_to(dataset, options.last_frame))) return true;
-  PipelineConfig base;
-  base.sensor = dataset.sensor;
-  const PipelineConfig config = resolve({.presets = variant.presets, .settings = variant.settings}, base);
-  const RunSummary summary =
-      run(dataset, std::nullopt, config, {.out = folder, .last_frame = options.last_frame}, progress.on_scan,
-          progress.should_stop);
-  return !summary.interrupted;
 }
 
 // The paper judges raw drives by smoothed inertial records.
@@ -78,7 +47,7 @@ ReproducedRow ego_row(const PaperTable& table, const PaperRow& row, const fs::pa
   for (const Variant& variant : variants_of(table)) {
     const fs::path folder = options.out / (table.data + "_" + row.name) / variant.name;
     progress.on_run(folder.string());
-    if (!truth || !run_unless_finished(dataset, variant, folder, options, progress)) {
+    if (!truth || !run_unless_finished(dataset, std::nullopt, variant, folder, options, progress)) {
       result.here.emplace_back(table.measures.size());
       continue;
     }
@@ -110,21 +79,6 @@ void ego_table(const KittiData& data, const ReproduceOptions& options, const Rep
   }
 }
 
-// Which drive a row of Table IV is about: "0926-0009 87".
-std::string drive_of(const std::string& row_name) {
-  return row_name.substr(0, row_name.find(' '));
-}
-
-void object_table(const KittiData& data, ReproducedTable& result) {
-  result.titles = {"here"};
-  for (const PaperRow& row : result.paper.rows) {
-    const bool there = data.raw.contains(drive_of(row.name));
-    if (!there) result.missing.push_back(row.name);
-    result.rows.push_back(
-        {.paper = row, .has_data = there, .here = {{}}, .note = there ? kNeedsTracking : "data missing"});
-  }
-}
-
 void tracking_table(const KittiData& data, const ReproduceProgress& progress, ReproducedTable& result) {
   result.titles = {"here, boxes alone, no poses"};
   const bool all = result.paper.rows.size() == 1 && result.paper.rows.front().name == "all";
@@ -148,6 +102,18 @@ void tracking_table(const KittiData& data, const ReproduceProgress& progress, Re
 }  // namespace
 
 std::vector<Variant> variants_of(const PaperTable& table) {
+  if (table.name == kTableOfObjects) {
+    return {
+        {.name = "geometry",
+         .title = "here, geometry only",
+         .presets = {},
+         .settings = {"tracking.sgf.mode=geometry"}},
+        {.name = "semantic",
+         .title = "here, semantic only",
+         .presets = {},
+         .settings = {"tracking.sgf.mode=semantic"}},
+        {.name = "fusion", .title = "here, fusion", .presets = {}, .settings = {"tracking.sgf.mode=fusion"}}};
+  }
   if (!has_ego_errors(table)) return {};
   std::vector<Variant> variants{{.name = "paper",
                                  .title = "here, paper's method, camera's view",
@@ -172,7 +138,12 @@ ReproducedTable reproduce_table(const PaperTable& table, const KittiData& data,
   } else if (table.data == "kitti_tracking") {
     tracking_table(data, progress, result);
   } else {
-    object_table(data, result);
+    for (const Variant& variant : variants_of(table)) result.titles.push_back(variant.title);
+    for (const PaperRow& row : table.rows) {
+      if (progress.should_stop()) break;
+      result.rows.push_back(object_row(table, row, data, options, progress));
+      if (!result.rows.back().has_data) result.missing.push_back(row.name);
+    }
   }
   return result;
 }

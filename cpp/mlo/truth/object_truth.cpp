@@ -93,6 +93,15 @@ std::vector<ObjectBox> read_tracklets(const std::filesystem::path& file) {
   return boxes;
 }
 
+std::vector<ObjectBox> annotated_boxes(const Dataset& dataset) {
+  if (!dataset.labels.empty() && dataset.calibration.T_camera0_lidar) {
+    return boxes_in_lidar(read_kitti_tracks(dataset.labels), *dataset.calibration.T_camera0_lidar);
+  }
+  const std::filesystem::path tracklets = dataset.root / "tracklet_labels.xml";
+  if (std::filesystem::exists(tracklets)) return read_tracklets(tracklets);
+  return {};
+}
+
 std::vector<ObjectPose> objects_in_map(std::span<const ObjectBox> boxes, const PoseList& poses) {
   std::map<std::size_t, std::size_t> index_of_frame;
   for (std::size_t i = 0; i < poses.frames.size(); ++i) index_of_frame.emplace(poses.frames[i], i);

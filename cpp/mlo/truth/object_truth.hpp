@@ -29,6 +29,10 @@ std::vector<ObjectBox> boxes_in_lidar(std::span<const ObjectRecord> records, con
 /// @throws InputError naming the file and what is wrong in it
 std::vector<ObjectBox> read_tracklets(const std::filesystem::path& file);
 
+/// The annotations that lie beside the data: labels of the tracking benchmark, or tracklets of a raw drive;
+/// empty where there are neither.
+std::vector<ObjectBox> annotated_boxes(const Dataset& dataset);
+
 /// The boxes in the map frame: box in the lidar frame times the lidar's pose (paper, section IV), sorted by
 /// frame and id. Those in frames without a pose are left out.
 /// @param poses  T_map_lidar by frame; their stamps go into the result
