@@ -69,20 +69,6 @@ TEST(ObjectFile, ColumnsInAnyOrderAndOthersPassedOver) {
   EXPECT_TRUE(read[0].size_lwh_m.isZero());
 }
 
-TEST(ObjectFile, UprightPosesOfATracker) {
-  const TempFolder folder;
-  const auto file = folder.write("objects.csv",
-                                 "frame,id,class,x_odom_m,y_odom_m,z_odom_m,yaw_odom_rad\n"
-                                 "3,9,van,1,2,3,1.5707963267948966\n");
-  const std::vector<ObjectPose> read = read_objects_csv(file);
-  ASSERT_EQ(read.size(), 1U);
-  EXPECT_EQ(read[0].T_map_object.translation(), Eigen::Vector3d(1.0, 2.0, 3.0));
-  const Eigen::Vector3d heading = read[0].T_map_object.rotation() * Eigen::Vector3d::UnitX();
-  EXPECT_NEAR((heading - Eigen::Vector3d::UnitY()).norm(), 0.0, 1e-9);
-  EXPECT_THAT(problem_of(folder, "frame,id,class,x_odom_m,y_odom_m,z_odom_m\n3,9,van,1,2,3\n"),
-              HasSubstr("yaw_odom_rad"));
-}
-
 TEST(ObjectFile, OnlyAHeaderIsNoObjects) {
   const TempFolder folder;
   EXPECT_TRUE(read_objects_csv(folder.write("objects.csv", kHeader)).empty());

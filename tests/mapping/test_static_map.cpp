@@ -153,6 +153,16 @@ TEST(StaticMap, WhatWasHardlySeenGoesWithItsSurroundings) {
   EXPECT_EQ(map.points()[0].p_map.z(), 2.9F);
 }
 
+TEST(StaticMap, WhatLiesAboutABoxThatMovesIsNotAdded) {
+  Percept seen;
+  seen.surface.candidates = {at(10.0F, 0.0F, 0.0F), at(12.3F, 0.0F, 0.0F), at(13.0F, 0.0F, 0.0F)};
+  const Box3d car{.center_lidar_m = {10.0, 0.0, 0.0}, .size_lwh_m = {4.0, 2.0, 1.5}, .yaw_rad = 0.0};
+  StaticMap map({.moving_margin_m = 0.5});
+  map.insert(seen, SweepMotion::none(), SE3(Eigen::Quaterniond::Identity(), {100.0, 0.0, 0.0}), {&car, 1});
+  ASSERT_EQ(map.points().size(), 1U);
+  EXPECT_EQ(map.points()[0].p_map.x(), 113.0F);
+}
+
 TEST(StaticMap, WhatIsOutOfReachIsNotVotedOn) {
   Percept seen;
   seen.surface.candidates = {at(10.0F, 0.1F, 0.1F)};

@@ -9,12 +9,12 @@ namespace {
 using test::kDegree;
 
 /// Pairs of standing objects, seen from a pose.
-std::vector<BoxPair> standing(const SE3& T_odom_lidar) {
+std::vector<BoxPair> standing(const SE3& T_map_lidar) {
   std::vector<BoxPair> pairs;
-  for (const Eigen::Vector3d& p_odom : {Eigen::Vector3d(20.0, 5.0, 0.0), Eigen::Vector3d(30.0, -6.0, 0.0),
-                                        Eigen::Vector3d(12.0, -4.0, 0.0), Eigen::Vector3d(45.0, 8.0, 0.0)}) {
-    const Eigen::Vector3d p_lidar = T_odom_lidar.inverse() * p_odom;
-    pairs.push_back({p_lidar.head<2>(), p_odom.head<2>(), 0.1});
+  for (const Eigen::Vector3d& p_map : {Eigen::Vector3d(20.0, 5.0, 0.0), Eigen::Vector3d(30.0, -6.0, 0.0),
+                                       Eigen::Vector3d(12.0, -4.0, 0.0), Eigen::Vector3d(45.0, 8.0, 0.0)}) {
+    const Eigen::Vector3d p_lidar = T_map_lidar.inverse() * p_map;
+    pairs.push_back({p_lidar.head<2>(), p_map.head<2>(), 0.1});
   }
   return pairs;
 }

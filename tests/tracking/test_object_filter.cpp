@@ -59,7 +59,7 @@ TEST(ObjectFilter, StandingCarsAreKnownToStand) {
   const ObjectFilter filter = follow(0.0, 40, 1);
   EXPECT_LT(filter.moving_probability(), 0.2);
   EXPECT_LT(filter.velocity_mps().norm(), 0.1);
-  EXPECT_LT(filter.box().center_odom_m.head<2>().norm(), 0.1) << "better than one measurement";
+  EXPECT_LT(filter.box().center_map_m.head<2>().norm(), 0.1) << "better than one measurement";
 }
 
 TEST(ObjectFilter, MovingCarsGetTheirVelocity) {
@@ -67,7 +67,7 @@ TEST(ObjectFilter, MovingCarsGetTheirVelocity) {
   EXPECT_GT(filter.moving_probability(), 0.99);
   EXPECT_NEAR(filter.velocity_mps().x(), 12.0, 0.5);
   EXPECT_NEAR(filter.velocity_mps().y(), 0.0, 0.3);
-  EXPECT_NEAR(filter.box().center_odom_m.x(), 48.0, 0.15);
+  EXPECT_NEAR(filter.box().center_map_m.x(), 48.0, 0.15);
 }
 
 TEST(ObjectFilter, ErrorsAgreeWithTheCovariance) {
@@ -76,7 +76,7 @@ TEST(ObjectFilter, ErrorsAgreeWithTheCovariance) {
   for (unsigned seed = 0; seed < kRuns; ++seed) {
     const ObjectFilter filter = follow(8.0, 30, 100 + seed);
     ObjectFilter::Vector4d error;
-    error << filter.box().center_odom_m.head<2>() - Eigen::Vector2d(24.0, 0.0),
+    error << filter.box().center_map_m.head<2>() - Eigen::Vector2d(24.0, 0.0),
         filter.velocity_mps() - Eigen::Vector2d(8.0, 0.0);
     normalised += error.dot(filter.planar_covariance().inverse() * error) / kRuns;
   }
@@ -100,10 +100,10 @@ TEST(ObjectFilter, StoppingAndStartingAreFollowed) {
   EXPECT_GT(filter.moving_probability(), 0.95);
   drive(0.0, 30);
   EXPECT_LT(filter.moving_probability(), 0.2);
-  EXPECT_NEAR(filter.box().center_odom_m.x(), x_m, 0.05);
+  EXPECT_NEAR(filter.box().center_map_m.x(), x_m, 0.05);
   drive(5.0, 20);
   EXPECT_GT(filter.moving_probability(), 0.95);
-  EXPECT_NEAR(filter.box().center_odom_m.x(), x_m, 0.1);
+  EXPECT_NEAR(filter.box().center_map_m.x(), x_m, 0.1);
 }
 
 TEST(ObjectFilter, AFlippedHeadingIsTurnedRound) {
@@ -149,7 +149,7 @@ TEST(ObjectFilter, OneOutlierMovesItLittle) {
   ObjectFilter filter = follow(0.0, 40, 3);
   filter.predict(kDt_s, config);
   filter.update(measured(placed_car(2.0, 0.0)), config);
-  EXPECT_LT(std::abs(filter.box().center_odom_m.x()), 0.4);
+  EXPECT_LT(std::abs(filter.box().center_map_m.x()), 0.4);
 }
 
 TEST(ObjectFilter, ATurnGivesARate) {

@@ -66,11 +66,11 @@ TEST(ObjectOdometry, FollowsADrivingCarBetterThanItsBoxes) {
     ASSERT_EQ(objects.size(), 1U);
     EXPECT_EQ(objects[0].relative_motion.usable(), scan > 0);
     const Eigen::Vector3d truth = car_pose(scan).translation();
-    squared_error += (objects[0].T_odom_object.translation() - truth).squaredNorm();
+    squared_error += (objects[0].T_map_object.translation() - truth).squaredNorm();
     squared_box_error += (lidar_pose(scan) * seen[0].detection.box.center_lidar_m - truth).squaredNorm();
   }
   EXPECT_LT(squared_error, 0.6 * squared_box_error);
-  EXPECT_NEAR(objects[0].velocity_odom_mps.norm(), 7.0, 0.3);
+  EXPECT_NEAR(objects[0].velocity_map_mps.norm(), 7.0, 0.3);
   EXPECT_NEAR(objects[0].turn_rate_radps, 10.0 * kDegree, 4.0 * kDegree);
   EXPECT_GT(objects[0].moving_probability, 0.95);
   EXPECT_GT(objects[0].num_points, 100U);
@@ -83,7 +83,7 @@ TEST(ObjectOdometry, FlippedBoxesDoNotTurnTheObject) {
     if (scan % 5 == 4) seen[0].detection.box.yaw_rad += std::numbers::pi;
     const auto objects = tracker.process(seen, lidar_pose(scan), kDt_s, kCompensated);
     ASSERT_EQ(objects.size(), 1U);
-    const double yaw = so3_log(objects[0].T_odom_object.rotation()).z();
+    const double yaw = so3_log(objects[0].T_map_object.rotation()).z();
     EXPECT_NEAR(yaw, 1.0 * kDegree * scan, 6.0 * kDegree) << "scan " << scan;
   }
 }
@@ -98,7 +98,7 @@ TEST(ObjectOdometry, AGapIsBridged) {
   }
   ASSERT_EQ(objects.size(), 1U);
   EXPECT_EQ(objects[0].id, 1);
-  EXPECT_LT((objects[0].T_odom_object.translation() - car_pose(29).translation()).norm(), 0.15);
+  EXPECT_LT((objects[0].T_map_object.translation() - car_pose(29).translation()).norm(), 0.15);
 }
 
 TEST(ObjectOdometry, BoxesWithoutPointsAreFollowed) {
@@ -110,7 +110,7 @@ TEST(ObjectOdometry, BoxesWithoutPointsAreFollowed) {
     objects = tracker.process(seen, lidar_pose(scan), kDt_s, kCompensated);
   }
   ASSERT_EQ(objects.size(), 1U);
-  EXPECT_LT((objects[0].T_odom_object.translation() - car_pose(19).translation()).norm(), 0.4);
+  EXPECT_LT((objects[0].T_map_object.translation() - car_pose(19).translation()).norm(), 0.4);
 }
 
 TEST(ObjectOdometry, BoxesThatAreNoBoxesLeaveTheirPointsOut) {
@@ -141,7 +141,7 @@ TEST(ObjectOdometry, TheSameForAnyNumberOfThreads) {
   ASSERT_EQ(one.size(), four.size());
   ASSERT_GE(one.size(), 3U);
   for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].T_odom_object.translation(), four[i].T_odom_object.translation());
+    EXPECT_EQ(one[i].T_map_object.translation(), four[i].T_map_object.translation());
   }
 }
 

@@ -13,11 +13,11 @@ using test::kDegree;
 using test::placed_car;
 
 TEST(PlacedBox, GoesToTheOdometryFrameAndBack) {
-  const SE3 T_odom_lidar(so3_exp({0.02, -0.01, 2.0}), {10.0, -5.0, 0.3});
+  const SE3 T_map_lidar(so3_exp({0.02, -0.01, 2.0}), {10.0, -5.0, 0.3});
   const Box3d box = car_box(20.0, 3.0, 170.0 * kDegree);
-  const PlacedBox placed = place(box, T_odom_lidar);
-  EXPECT_TRUE(placed.center_odom_m.isApprox(T_odom_lidar * box.center_lidar_m, 1e-12));
-  const Box3d back = in_lidar(placed, T_odom_lidar);
+  const PlacedBox placed = place(box, T_map_lidar);
+  EXPECT_TRUE(placed.center_map_m.isApprox(T_map_lidar * box.center_lidar_m, 1e-12));
+  const Box3d back = in_lidar(placed, T_map_lidar);
   EXPECT_TRUE(back.center_lidar_m.isApprox(box.center_lidar_m, 1e-12));
   // Boxes stay upright in both frames: exact up to the second order of the tilt.
   EXPECT_NEAR(wrapped_angle(back.yaw_rad - box.yaw_rad), 0.0, 1e-3);

@@ -31,10 +31,10 @@ TEST(Tracker, NoDetectionsNoTracks) {
 TEST(Tracker, AParkedCarIsOneTrackWhileTheLidarMoves) {
   Tracker tracker({});
   for (int i = 0; i < 30; ++i) {
-    const SE3 T_odom_lidar(so3_exp({0.0, 0.0, 1.0 * kDegree * i}), {1.0 * i, 0.0, 0.0});
+    const SE3 T_map_lidar(so3_exp({0.0, 0.0, 1.0 * kDegree * i}), {1.0 * i, 0.0, 0.0});
     const PlacedBox parked{{50.0, 3.0, -1.0}, {4.0, 1.6, 1.5}, 0.2};
-    const std::vector<Detection> seen{{ObjectClass::car, in_lidar(parked, T_odom_lidar), 0.999}};
-    const auto objects = tracker.process(seen, T_odom_lidar, kDt_s);
+    const std::vector<Detection> seen{{ObjectClass::car, in_lidar(parked, T_map_lidar), 0.999}};
+    const auto objects = tracker.process(seen, T_map_lidar, kDt_s);
     ASSERT_EQ(objects.size(), 1U);
     EXPECT_EQ(objects[0].id, 1);
     EXPECT_EQ(objects[0].hits, i + 1);
@@ -42,7 +42,7 @@ TEST(Tracker, AParkedCarIsOneTrackWhileTheLidarMoves) {
     if (i > 20) {
       EXPECT_LT(objects[0].moving_probability, 0.2);
     }
-    EXPECT_LT((objects[0].T_odom_object.translation() - parked.center_odom_m).norm(), 0.05);
+    EXPECT_LT((objects[0].T_map_object.translation() - parked.center_map_m).norm(), 0.05);
     EXPECT_LT((objects[0].box.center_lidar_m - seen[0].box.center_lidar_m).norm(), 0.05);
   }
 }
@@ -60,8 +60,8 @@ TEST(Tracker, CrossingCarsKeepTheirIdentities) {
   const long across = objects[1].id;
   for (int i = 1; i < 40; ++i) objects = tracker.process(scene(i), SE3(), kDt_s);
   ASSERT_EQ(objects.size(), 2U);
-  EXPECT_NEAR(find(objects, along)->velocity_odom_mps.x(), 8.0, 0.5);
-  EXPECT_NEAR(find(objects, across)->velocity_odom_mps.y(), 8.0, 0.5);
+  EXPECT_NEAR(find(objects, along)->velocity_map_mps.x(), 8.0, 0.5);
+  EXPECT_NEAR(find(objects, across)->velocity_map_mps.y(), 8.0, 0.5);
 }
 
 TEST(Tracker, AnOccludedCarComesBackAsItself) {
@@ -143,7 +143,7 @@ TEST(Tracker, AbsurdSizesDoNoHarmToOthers) {
   ASSERT_FALSE(objects.empty());
   EXPECT_EQ(objects[0].id, 1);
   EXPECT_EQ(objects[0].hits, 10);
-  EXPECT_TRUE(objects[0].T_odom_object.is_finite());
+  EXPECT_TRUE(objects[0].T_map_object.is_finite());
 }
 
 TEST(Tracker, WithoutPosesTheLidarsMotionIsFoundFromTheBoxes) {
@@ -163,7 +163,7 @@ TEST(Tracker, WithoutPosesTheLidarsMotionIsFoundFromTheBoxes) {
   }
   ASSERT_EQ(objects.size(), 4U);
   for (const TrackedObject& object : objects) EXPECT_EQ(object.hits, 25);
-  const SE3 error = truth.inverse() * tracker.T_odom_lidar();
+  const SE3 error = truth.inverse() * tracker.T_map_lidar();
   EXPECT_LT(error.translation().norm(), 0.5);
   EXPECT_LT(error.rotation_angle_rad(), 1.0 * kDegree);
 }

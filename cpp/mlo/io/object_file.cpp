@@ -64,23 +64,11 @@ class Row {
   std::string where_;
 };
 
-Eigen::Quaterniond parse_rotation(const Row& row, bool upright) {
-  if (upright) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(row.needed_number("yaw_odom_rad"), Eigen::Vector3d::UnitZ()));
-  }
+SE3 parse_pose(const Row& row) {
   const Eigen::Quaterniond rotation(row.needed_number("qw"), row.needed_number("qx"), row.needed_number("qy"),
                                     row.needed_number("qz"));
   if (!(std::abs(rotation.norm() - 1.0) < kRotationTolerance)) row.fail("qx, qy, qz, qw are no rotation");
-  return rotation;
-}
-
-// In the map frame, or upright in the odometry frame, as trackers give them.
-SE3 parse_pose(const Row& row) {
-  const bool upright = !row.text("x_m") && row.text("x_odom_m");
-  const auto coordinate = [&](const char* axis) {
-    return row.needed_number(fmt::format("{}{}_m", axis, upright ? "_odom" : ""));
-  };
-  return {parse_rotation(row, upright), {coordinate("x"), coordinate("y"), coordinate("z")}};
+  return {rotation, {row.needed_number("x_m"), row.needed_number("y_m"), row.needed_number("z_m")}};
 }
 
 ObjectPose parse_row(const Row& row) {

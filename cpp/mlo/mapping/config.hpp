@@ -109,6 +109,7 @@ struct StaticMapConfig {
   double free_space_hit_votes = 0.7;
   double free_space_max_votes = 8.0;
   double free_space_sure_votes = 3.0;
+  double moving_margin_m = 0.5;
   double memory_radius_m = 200.0;
 
   template <class Visitor>
@@ -136,6 +137,9 @@ struct StaticMapConfig {
           "points with fewer votes are left out where their surroundings were seen through: higher removes "
           "more, of "
           "what stands too");
+    visit("moving_margin_m", moving_margin_m, between(0.0, 5.0),
+          "boxes of tracks that move count as this much larger on every side, so that nothing of them is "
+          "added [m]");
     visit("memory_radius_m", memory_radius_m, between(50.0, 1e6),
           "what is farther from the robot waits on disk: memory against reading it again on return [m]");
   }

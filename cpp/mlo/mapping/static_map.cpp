@@ -37,17 +37,20 @@ float distance_m(const VoxelKey& tile, const Eigen::Vector3f& p_map) {
 StaticMap::StaticMap(const StaticMapConfig& config)
     : config_(config), inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)) {}
 
-void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar) {
-  insert(percept.edge.candidates, MapLabel::edge, motion, T_map_lidar);
-  insert(percept.ground.candidates, MapLabel::ground, motion, T_map_lidar);
-  insert(percept.surface.candidates, MapLabel::surface, motion, T_map_lidar);
+void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
+                       std::span<const Box3d> moving) {
+  insert(percept.edge.candidates, MapLabel::edge, motion, T_map_lidar, moving);
+  insert(percept.ground.candidates, MapLabel::ground, motion, T_map_lidar, moving);
+  insert(percept.surface.candidates, MapLabel::surface, motion, T_map_lidar, moving);
 }
 
 void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
-                       const SE3& T_map_lidar) {
+                       const SE3& T_map_lidar, std::span<const Box3d> moving) {
   for (const FeaturePoint& feature : features) {
     const Eigen::Vector3d p_lidar =
         motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
+    const auto is_near = [&](const Box3d& box) { return box.contains(p_lidar, config_.moving_margin_m); };
+    if (std::any_of(moving.begin(), moving.end(), is_near)) continue;
     const Eigen::Vector3f p_map = (T_map_lidar * p_lidar).cast<float>();
     Tile& tile = tile_at(p_map);
     const auto next = static_cast<std::uint32_t>(tile.entries.size());

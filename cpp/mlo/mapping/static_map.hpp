@@ -25,7 +25,10 @@ class StaticMap {
   /// Adds the candidate sets of a scan.
   /// @param motion       brings the points to the time of the pose
   /// @param T_map_lidar  pose at the motion's reference time
-  void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar);
+  /// @param moving       what moves, in the lidar frame at that time: points in or near these boxes are left
+  /// out
+  void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
+              std::span<const Box3d> moving = {});
 
   /// Lets a scan vote on the points of the map: for those that it sees, against those that it sees through.
   /// @param view  of the whole scan, objects too; motion and pose as above
@@ -56,7 +59,7 @@ class StaticMap {
   };
 
   void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
-              const SE3& T_map_lidar);
+              const SE3& T_map_lidar, std::span<const Box3d> moving);
   /// Points that were seen through in each block of space that has some.
   using Counts = tsl::robin_map<VoxelKey, int, VoxelKeyHash>;
   Counts count_seen_through() const;

@@ -14,10 +14,10 @@
 namespace mlo {
 
 /// The steps of a scan, in order.
-enum class Stage { prepare, perception, odometry, tracking, refinement, map_update };
+enum class Stage { prepare, perception, odometry, refinement, tracking, map_update };
 inline constexpr std::size_t kNumStages = 6;
-inline constexpr std::array<std::string_view, kNumStages> kStageNames{"prepare",  "perception", "odometry",
-                                                                      "tracking", "refinement", "map_update"};
+inline constexpr std::array<std::string_view, kNumStages> kStageNames{
+    "prepare", "perception", "odometry", "refinement", "tracking", "map_update"};
 
 /// Wall time per stage [ms].
 struct StageTimes {

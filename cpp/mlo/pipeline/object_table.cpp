@@ -11,7 +11,7 @@ namespace mlo {
 
 std::string object_table_header() {
   return objects_csv_header() +
-         ",track_state,x_odom_m,y_odom_m,z_odom_m,yaw_odom_rad,vx_odom_mps,vy_odom_mps,turn_rate_radps,"
+         ",track_state,yaw_rad,vx_mps,vy_mps,turn_rate_radps,"
          "moving_probability,sd_x_m,sd_y_m,sd_vx_mps,sd_vy_mps,sd_yaw_rad,sd_turn_rate_radps,x_lidar_m,y_"
          "lidar_m,"
          "z_lidar_m,yaw_lidar_rad,existence,hits,misses,motion_status";
@@ -22,19 +22,18 @@ std::string object_table_row(const ObjectRow& place, const TrackedObject& object
                         .stamp_s = place.stamp_s,
                         .id = object.id,
                         .type = std::string(to_string(object.object_class)),
-                        .state = object.moving_probability > 0.5 ? "moving" : "at_rest",
-                        .T_map_object = place.T_map_odom * object.T_odom_object,
+                        .state = object.is_moving() ? "moving" : "at_rest",
+                        .T_map_object = object.T_map_object,
                         .size_lwh_m = object.box.size_lwh_m,
                         .points = object.num_points};
-  const Eigen::Vector3d& p = object.T_odom_object.translation();
-  const Eigen::Vector3d heading = object.T_odom_object.rotation() * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d heading = object.T_map_object.rotation() * Eigen::Vector3d::UnitX();
   const Eigen::Vector4d sd = object.planar_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::Vector2d yaw_sd = object.yaw_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Box3d& box = object.box;
   return objects_csv_row(pose) +
-         fmt::format(",{},{:.4f},{:.4f},{:.4f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f}", to_string(object.state),
-                     p.x(), p.y(), p.z(), std::atan2(heading.y(), heading.x()), object.velocity_odom_mps.x(),
-                     object.velocity_odom_mps.y(), object.turn_rate_radps, object.moving_probability) +
+         fmt::format(",{},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f}", to_string(object.state),
+                     std::atan2(heading.y(), heading.x()), object.velocity_map_mps.x(),
+                     object.velocity_map_mps.y(), object.turn_rate_radps, object.moving_probability) +
          fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f}", sd(0), sd(1), sd(2), sd(3), yaw_sd(0),
                      yaw_sd(1)) +
          fmt::format(",{:.4f},{:.4f},{:.4f},{:.5f},{:.2f},{},{},{}", box.center_lidar_m.x(),
@@ -46,7 +45,7 @@ void ObjectTrajectories::add(const ObjectRow& place, const TrackedObject& object
   PoseList& poses = by_id_[object.id];
   poses.frames.push_back(place.frame);
   poses.stamps_s.push_back(place.stamp_s);
-  poses.T_world_body.push_back(place.T_map_odom * object.T_odom_object);
+  poses.T_world_body.push_back(object.T_map_object);
 }
 
 void ObjectTrajectories::write(const std::filesystem::path& folder) const {

@@ -14,12 +14,11 @@ namespace mlo {
 struct ObjectRow {
   std::size_t frame = 0;
   double stamp_s = 0.0;
-  SE3 T_map_odom;  ///< the odometry frame in the map frame; Eq. (16)
 };
 
 /// Header and rows of objects.csv, without line ends: the columns of docs/evaluation.md (pose in the map
-/// frame) and beside them track_state, pose in the odometry frame, velocity, turn rate, probability that it
-/// moves, standard deviations, box in the lidar frame, log-odds of existence, hits, misses and the status of
+/// frame) and beside them track_state, velocity and turn rate, probability that it moves, standard deviations
+/// of these and of the pose, box in the lidar frame, log-odds of existence, hits, misses and the status of
 /// the motion estimate.
 std::string object_table_header();
 std::string object_table_row(const ObjectRow& place, const TrackedObject& object);

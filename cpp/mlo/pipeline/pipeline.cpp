@@ -45,6 +45,15 @@ bool agrees(const SE3& T_odometry, const SE3& prediction, const MotionConfig& co
          difference.rotation_angle_rad() <= config.constant_motion_within_deg * std::numbers::pi / 180.0;
 }
 
+// Of the tracks that are believed, seen in this scan or not.
+std::vector<Box3d> boxes_of_moving(std::span<const TrackedObject> objects) {
+  std::vector<Box3d> boxes;
+  for (const TrackedObject& object : objects) {
+    if (object.reported && object.is_moving()) boxes.push_back(object.box);
+  }
+  return boxes;
+}
+
 // Points of features brought to the reference time and placed by a pose.
 void append_placed(std::span<const FeaturePoint> features, const SweepMotion& motion, const SE3& T_map_lidar,
                    std::vector<Eigen::Vector3f>& points_map) {
@@ -98,11 +107,13 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
   result.first = state_.empty;
   result.odometry = ego.increment;
   result.consistency = ego.consistency;
-  result.objects = timed(times, Stage::tracking, [&] { return track(prepared, seen, T_odometry, sweep); });
   const bool motion_known = state_.motion_known || ego.increment.usable();
   result.refinement =
       timed(times, Stage::refinement, [&] { return refine_pose(seen, T_start, motion_known, sweep); });
 
+  const SE3 T_map_lidar =
+      result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
+  result.objects = timed(times, Stage::tracking, [&] { return track(prepared, seen, T_map_lidar, sweep); });
   timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, sweep, result); });
   return result;
 }
@@ -131,10 +142,10 @@ EgoOdometryResult Pipeline::estimate_increment(const Percept& seen, const SE3& p
   return estimate_ego(seen, state_.reference, guess, timing, config_.odometry, frame);
 }
 
-std::vector<TrackedObject> Pipeline::track(const Scan& scan, const Percept& seen, const SE3& T_odometry,
+std::vector<TrackedObject> Pipeline::track(const Scan& scan, const Percept& seen, const SE3& T_map_lidar,
                                            const SweepTiming& timing) {
   const double dt_s = state_.empty ? 0.0 : std::max(0.0, scan.stamp_s - state_.stamp_s);
-  return tracker_.process(seen.objects, state_.T_odom_lidar * T_odometry, dt_s, timing);
+  return tracker_.process(seen.objects, T_map_lidar, dt_s, timing);
 }
 
 PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
@@ -234,6 +245,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
     clear_local_maps();
     next.scans_lost = 0;
   }
+  const std::vector<Box3d> moving = boxes_of_moving(result.objects);
   tbb::parallel_invoke(
       [&] {
         if (!config_.odometry.enabled) return;
@@ -245,7 +257,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
       },
       [&] {
         if (!result.localised()) return;
-        static_map_.insert(seen, motion, T_map_lidar);
+        static_map_.insert(seen, motion, T_map_lidar, moving);
         if (looks_for_free_space(scan.frame))
           static_map_.observe(RangeImage(scan.points), motion, T_map_lidar);
         static_map_.spool_far(T_map_lidar.translation().cast<float>());

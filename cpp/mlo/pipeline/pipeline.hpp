@@ -57,7 +57,7 @@ class Pipeline {
                                        std::size_t frame) const;
   PoseEstimate refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
                            const SweepTiming& timing);
-  std::vector<TrackedObject> track(const Scan& scan, const Percept& seen, const SE3& T_odometry,
+  std::vector<TrackedObject> track(const Scan& scan, const Percept& seen, const SE3& T_map_lidar,
                                    const SweepTiming& timing);
   void clear_maps();
   void clear_local_maps();

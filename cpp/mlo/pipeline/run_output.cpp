@@ -93,7 +93,7 @@ void RunOutput::write(const FrameResult& result) {
 }
 
 void RunOutput::write_objects(const FrameResult& result) {
-  const ObjectRow place{result.frame, result.stamp_s, result.T_map_lidar * result.T_odom_lidar.inverse()};
+  const ObjectRow place{result.frame, result.stamp_s};
   for (const TrackedObject& object : result.objects) {
     if (!object.reported) continue;
     objects_->write_row(object_table_row(place, object));

@@ -66,7 +66,7 @@ std::vector<FrameTracks> track_detections(const DetectionList& detections,
     } else {
       result.objects = tracker.process(seen, scan_interval_s);
     }
-    result.T_odom_lidar = tracker.T_odom_lidar();
+    result.T_map_lidar = tracker.T_map_lidar();
     frames.push_back(std::move(result));
   }
   return frames;
@@ -95,7 +95,7 @@ void write_object_table(const std::filesystem::path& path, std::span<const Frame
   std::string text = object_table_header() + "\n";
   for (const FrameTracks& frame : frames) {
     for (const TrackedObject& object : frame.objects) {
-      if (object.reported) text += object_table_row({frame.frame, frame.stamp_s, SE3()}, object) + "\n";
+      if (object.reported) text += object_table_row({frame.frame, frame.stamp_s}, object) + "\n";
     }
   }
   write_file_atomically(path, text);
@@ -105,7 +105,7 @@ void write_object_trajectories(const std::filesystem::path& folder, std::span<co
   ObjectTrajectories trajectories;
   for (const FrameTracks& frame : frames) {
     for (const TrackedObject& object : frame.objects) {
-      if (object.reported) trajectories.add({frame.frame, frame.stamp_s, SE3()}, object);
+      if (object.reported) trajectories.add({frame.frame, frame.stamp_s}, object);
     }
   }
   trajectories.write(folder);

@@ -16,7 +16,7 @@ namespace mlo {
 struct FrameTracks {
   std::size_t frame = 0;
   double stamp_s = 0.0;
-  SE3 T_odom_lidar;
+  SE3 T_map_lidar;
   std::vector<TrackedObject> objects;
 };
 
@@ -46,7 +46,7 @@ std::vector<ObjectRecord> kitti_records(std::span<const FrameTracks> frames, con
 /// @throws InputError when the file cannot be written
 void write_object_table(const std::filesystem::path& path, std::span<const FrameTracks> frames);
 
-/// A TUM file (NNNNN.txt) per track that was reported, of its poses in the odometry frame.
+/// A TUM file (NNNNN.txt) per track that was reported, of its poses in the map frame.
 /// @throws InputError when one cannot be written
 void write_object_trajectories(const std::filesystem::path& folder, std::span<const FrameTracks> frames);
 

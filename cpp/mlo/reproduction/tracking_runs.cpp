@@ -40,7 +40,7 @@ std::vector<FrameTracks> track(const DetectionList& detections, const TrackingCo
     times_ms.push_back(elapsed.count());
     frames.push_back({.frame = frame,
                       .stamp_s = static_cast<double>(frame) * kInterval_s,
-                      .T_odom_lidar = tracker.T_odom_lidar(),
+                      .T_map_lidar = tracker.T_map_lidar(),
                       .objects = std::move(objects)});
   }
   return frames;

@@ -6,14 +6,14 @@
 
 namespace mlo {
 
-SE3 ego_from_boxes(std::span<const BoxPair> pairs, const SE3& T_odom_lidar_predicted,
+SE3 ego_from_boxes(std::span<const BoxPair> pairs, const SE3& T_map_lidar_predicted,
                    const EgoChange& change) {
   constexpr int kIterations = 8;
   constexpr double kKernel2 = 9.0;  // squared residual over variance at which a pair's pull fades
   const Eigen::Vector3d prior(1.0 / (change.translation_m * change.translation_m),
                               1.0 / (change.translation_m * change.translation_m),
                               1.0 / (change.rotation_rad * change.rotation_rad));
-  const Eigen::Vector2d origin_m = T_odom_lidar_predicted.translation().head<2>();
+  const Eigen::Vector2d origin_m = T_map_lidar_predicted.translation().head<2>();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // x, y [m], yaw [rad] about the predicted place
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Eigen::Matrix3d H = prior.asDiagonal();
@@ -22,8 +22,8 @@ SE3 ego_from_boxes(std::span<const BoxPair> pairs, const SE3& T_odom_lidar_predi
     for (const BoxPair& pair : pairs) {
       const Eigen::Vector3d p(pair.measured_lidar_m.x(), pair.measured_lidar_m.y(), 0.0);
       const Eigen::Vector2d lever_m =
-          turn * Eigen::Vector2d((T_odom_lidar_predicted.rotation() * p).head<2>());
-      const Eigen::Vector2d residual_m = origin_m + offset.head<2>() + lever_m - pair.predicted_odom_m;
+          turn * Eigen::Vector2d((T_map_lidar_predicted.rotation() * p).head<2>());
+      const Eigen::Vector2d residual_m = origin_m + offset.head<2>() + lever_m - pair.predicted_map_m;
       const double information = 1.0 / (pair.sd_m * pair.sd_m);
       const double fade = kKernel2 / (kKernel2 + information * residual_m.squaredNorm());
       Eigen::Matrix<double, 2, 3> J;
@@ -37,8 +37,8 @@ SE3 ego_from_boxes(std::span<const BoxPair> pairs, const SE3& T_odom_lidar_predi
     if (step.norm() < 1e-6) break;
   }
   const SE3 turn({std::cos(0.5 * offset.z()), 0.0, 0.0, std::sin(0.5 * offset.z())}, Eigen::Vector3d::Zero());
-  return {turn.rotation() * T_odom_lidar_predicted.rotation(),
-          T_odom_lidar_predicted.translation() + Eigen::Vector3d(offset.x(), offset.y(), 0.0)};
+  return {turn.rotation() * T_map_lidar_predicted.rotation(),
+          T_map_lidar_predicted.translation() + Eigen::Vector3d(offset.x(), offset.y(), 0.0)};
 }
 
 }  // namespace mlo

@@ -35,13 +35,13 @@ double confidence_logit(double confidence) {
   return std::clamp(std::log(confidence / (1.0 - confidence)), kMin, kMax);
 }
 
-BoxMeasurement measure(const Detection& detection, const SE3& T_odom_lidar, const BoxNoiseConfig& config) {
+BoxMeasurement measure(const Detection& detection, const SE3& T_map_lidar, const BoxNoiseConfig& config) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr double kWidthOverLength = 0.4;
   const double logit = confidence_logit(detection.confidence);
   const auto sd = [&](double at_zero, double decay) { return at_zero * std::exp(-decay * logit); };
   const double length_sd_m = sd(config.size_m, config.size_decay);
-  return {.box = place(detection.box, T_odom_lidar),
+  return {.box = place(detection.box, T_map_lidar),
           .along_sd_m = sd(config.along_m, config.along_decay),
           .across_sd_m = sd(config.across_m, config.across_decay),
           .height_sd_m = sd(config.height_m, config.height_decay),
@@ -59,14 +59,14 @@ ObjectFilter::ObjectFilter(const BoxMeasurement& first, bool wheeled, const Obje
     : wheeled_(wheeled) {
   const PlacedBox& box = first.box;
   for (Planar& planar : planar_) {
-    planar.state.head<2>() = box.center_odom_m.head<2>();
+    planar.state.head<2>() = box.center_map_m.head<2>();
     planar.covariance.topLeftCorner<2, 2>() =
         oriented_covariance(box.yaw_rad, first.along_sd_m, first.across_sd_m);
   }
   const double across_sd = wheeled ? config.sideways_speed_mps : config.start_speed_mps;
   planar_[kMoving].covariance.bottomRightCorner<2, 2>() =
       oriented_covariance(box.yaw_rad, config.start_speed_mps, across_sd);
-  height_ = {box.center_odom_m.z(), square(first.height_sd_m)};
+  height_ = {box.center_map_m.z(), square(first.height_sd_m)};
   for (int i = 0; i < 3; ++i) size_[i] = {box.size_lwh_m(i), square(first.size_sd_m(i))};
   constexpr double kStartTurnRate_radps = 0.3;
   yaw_ = {box.yaw_rad, 0.0};
@@ -134,10 +134,10 @@ void ObjectFilter::update(const BoxMeasurement& measurement, const ObjectMotionC
   const Eigen::Matrix2d noise =
       scale * oriented_covariance(box.yaw_rad, measurement.along_sd_m, measurement.across_sd_m);
   update_yaw(box.yaw_rad, measurement.yaw_sd_rad);
-  update_planar(box.center_odom_m.head<2>(), noise);
+  update_planar(box.center_map_m.head<2>(), noise);
   if (wheeled_) forbid_sideways_motion(config.sideways_speed_mps);
   turn_round_if_backwards();
-  height_.update(box.center_odom_m.z(), scale * square(measurement.height_sd_m));
+  height_.update(box.center_map_m.z(), scale * square(measurement.height_sd_m));
   for (int i = 0; i < 3; ++i) size_[i].update(box.size_lwh_m(i), scale * square(measurement.size_sd_m(i)));
 }
 
@@ -225,7 +225,7 @@ ObjectFilter::Distance ObjectFilter::distance(const BoxMeasurement& measurement,
   double least = std::numeric_limits<double>::infinity();
   for (const Planar& planar : planar_) {
     const Eigen::Matrix2d S = planar.covariance.topLeftCorner<2, 2>() + noise;
-    const Eigen::Vector2d innovation_m = box.center_odom_m.head<2>() - planar.state.head<2>();
+    const Eigen::Vector2d innovation_m = box.center_map_m.head<2>() - planar.state.head<2>();
     const double position = innovation_m.dot(S.inverse() * innovation_m);
     const double spread = std::log(S.determinant()) - 2.0 * std::log(planar.probability);
     if (position + spread >= least) continue;

@@ -21,10 +21,10 @@ struct BoxMeasurement {
   Eigen::Vector3d size_sd_m = Eigen::Vector3d::Zero();
 };
 
-/// A detection in the odometry frame with the noise that its confidence stands for.
-BoxMeasurement measure(const Detection& detection, const SE3& T_odom_lidar, const BoxNoiseConfig& config);
+/// A detection in the map frame with the noise that its confidence stands for.
+BoxMeasurement measure(const Detection& detection, const SE3& T_map_lidar, const BoxNoiseConfig& config);
 
-/// Estimate of an object's box and motion in the odometry frame from boxes: a Kalman filter with two models
+/// Estimate of an object's box and motion in the map frame from boxes: a Kalman filter with two models
 /// of the planar motion that mix (interacting multiple models: Blom and Bar-Shalom, IEEE TAC 1988), standing
 /// and moving with nearly constant velocity, and independent filters for height, heading with turn rate and
 /// size.
@@ -62,7 +62,7 @@ class ObjectFilter {
   double turn_rate_radps() const { return yaw_(1); }
   /// Probability that the object moves.
   double moving_probability() const { return planar_[kMoving].probability; }
-  /// Of [x; y; vx; vy] in the odometry frame, both models together.
+  /// Of [x; y; vx; vy] in the map frame, both models together.
   Matrix4d planar_covariance() const;
   /// Of [yaw; turn rate].
   const Eigen::Matrix2d& yaw_covariance() const { return yaw_covariance_; }

@@ -36,11 +36,11 @@ SE3 body_fixed_motion(const SE3& L_lidar_object, const SE3& X) {
 
 ObjectOdometry::ObjectOdometry(const ObjectSighting& first, const SweepTiming& timing,
                                const SgfConfig& config)
-    : T_odom_object_(first.measurement.box.T_odom_object()),
-      T_odom_lidar_(first.T_odom_lidar),
-      last_box_lidar_(in_lidar(first.measurement.box, first.T_odom_lidar)) {
+    : T_map_object_(first.measurement.box.T_map_object()),
+      T_map_lidar_(first.T_map_lidar),
+      last_box_lidar_(in_lidar(first.measurement.box, first.T_map_lidar)) {
   // The object's motion within its first sweep is not known yet.
-  remember(shape(first, 1, timing), SE3(), T_odom_lidar_.inverse() * T_odom_object_, config);
+  remember(shape(first, 1, timing), SE3(), T_map_lidar_.inverse() * T_map_object_, config);
 }
 
 std::vector<ShapedPoint> ObjectOdometry::shape(const ObjectSighting& sighting, int scans_since,
@@ -77,18 +77,18 @@ ObjectTarget ObjectOdometry::target(const SE3& L_lidar_object, const SgfConfig& 
   return {points, config.voxel_m};
 }
 
-PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const SE3& T_odom_object_guess,
+PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const SE3& T_map_object_guess,
                                     const Eigen::Vector3d& size_lwh_m, int scans_since,
                                     const SweepTiming& timing, const SgfConfig& config) {
-  const SE3 L_previous = T_odom_lidar_.inverse() * T_odom_object_;
-  const double guess_yaw = same_way(yaw_of(T_odom_object_guess), yaw_of(T_odom_object_));
-  const SE3 T_odom_object_ahead(
-      so3_exp({0.0, 0.0, guess_yaw - yaw_of(T_odom_object_)}) * T_odom_object_.rotation(),
-      T_odom_object_guess.translation());
-  const SE3 L_guess = sighting.T_odom_lidar.inverse() * T_odom_object_ahead;
+  const SE3 L_previous = T_map_lidar_.inverse() * T_map_object_;
+  const double guess_yaw = same_way(yaw_of(T_map_object_guess), yaw_of(T_map_object_));
+  const SE3 T_map_object_ahead(
+      so3_exp({0.0, 0.0, guess_yaw - yaw_of(T_map_object_)}) * T_map_object_.rotation(),
+      T_map_object_guess.translation());
+  const SE3 L_guess = sighting.T_map_lidar.inverse() * T_map_object_ahead;
   const SE3 H_guess = L_previous * L_guess.inverse();
 
-  Box3d now = in_lidar(sighting.measurement.box, sighting.T_odom_lidar);
+  Box3d now = in_lidar(sighting.measurement.box, sighting.T_map_lidar);
   now.yaw_rad = same_way(now.yaw_rad, yaw_of(L_guess));
   Box3d before{L_previous.translation(), size_lwh_m, yaw_of(L_previous)};
   if (config.printed_weights) before = last_box_lidar_;
@@ -105,17 +105,17 @@ PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const SE3& T
   PoseEstimate estimate = estimate_relative_motion(problem, H_guess, config);
   const SE3 H = estimate.usable() ? estimate.T_target_source : H_guess;
 
-  const SE3 delta = T_odom_lidar_.inverse() * sighting.T_odom_lidar;
-  T_odom_object_ = T_odom_object_ * body_fixed_motion(L_previous, absolute_motion(delta, H));
-  T_odom_lidar_ = sighting.T_odom_lidar;
+  const SE3 delta = T_map_lidar_.inverse() * sighting.T_map_lidar;
+  T_map_object_ = T_map_object_ * body_fixed_motion(L_previous, absolute_motion(delta, H));
+  T_map_lidar_ = sighting.T_map_lidar;
   last_box_lidar_ = now;
-  remember(points, H, T_odom_lidar_.inverse() * T_odom_object_, config);
+  remember(points, H, T_map_lidar_.inverse() * T_map_object_, config);
   return estimate;
 }
 
 void ObjectOdometry::turn_round() {
   const SE3 half_turn(so3_exp({0.0, 0.0, std::numbers::pi}), Eigen::Vector3d::Zero());
-  T_odom_object_ = T_odom_object_ * half_turn;
+  T_map_object_ = T_map_object_ * half_turn;
   last_box_lidar_.yaw_rad = wrapped_angle(last_box_lidar_.yaw_rad + std::numbers::pi);
   for (std::vector<ShapedPoint>& scan : points_object_) {
     for (ShapedPoint& point : scan) point = moved(point, half_turn.inverse());

@@ -22,9 +22,9 @@ SE3 body_fixed_motion(const SE3& L_lidar_object, const SE3& X);
 /// What one scan has of an object.
 struct ObjectSighting {
   std::span<const Point> points;  ///< as measured
-  BoxMeasurement measurement;     ///< its box in the odometry frame, with noise
+  BoxMeasurement measurement;     ///< its box in the map frame, with noise
   double confidence = 1.0;
-  SE3 T_odom_lidar;
+  SE3 T_map_lidar;
 };
 
 /// Pose of one object by accumulated body-fixed motions (paper, section III-C-3), each estimated from points
@@ -35,17 +35,17 @@ class ObjectOdometry {
   ObjectOdometry(const ObjectSighting& first, const SweepTiming& timing, const SgfConfig& config);
 
   /// Continues by one sighting.
-  /// @param T_odom_object_guess  where the object should be by other means; its heading may be flipped
+  /// @param T_map_object_guess  where the object should be by other means; its heading may be flipped
   /// @param size_lwh_m           what is known of its size by now
   /// @param scans_since          1 when it was seen in the scan before
   /// @return T_target_source is the relative motion H since the last sighting; when it is not usable, the
   /// guess counts
-  PoseEstimate update(const ObjectSighting& sighting, const SE3& T_odom_object_guess,
+  PoseEstimate update(const ObjectSighting& sighting, const SE3& T_map_object_guess,
                       const Eigen::Vector3d& size_lwh_m, int scans_since, const SweepTiming& timing,
                       const SgfConfig& config);
 
   /// At the last sighting.
-  const SE3& T_odom_object() const { return T_odom_object_; }
+  const SE3& T_map_object() const { return T_map_object_; }
   /// Front becomes back.
   void turn_round();
 
@@ -56,8 +56,8 @@ class ObjectOdometry {
                 const SgfConfig& config);
   ObjectTarget target(const SE3& L_lidar_object, const SgfConfig& config) const;
 
-  SE3 T_odom_object_;
-  SE3 T_odom_lidar_;                                    ///< at the last sighting
+  SE3 T_map_object_;
+  SE3 T_map_lidar_;                                     ///< at the last sighting
   Box3d last_box_lidar_;                                ///< the detector's, at the last sighting
   std::deque<std::vector<ShapedPoint>> points_object_;  ///< of earlier sightings, in the object's frame
 };

@@ -13,15 +13,13 @@ double rotated_yaw(double yaw_rad, const Eigen::Quaterniond& rotation) {
 
 }  // namespace
 
-PlacedBox place(const Box3d& box, const SE3& T_odom_lidar) {
-  return {T_odom_lidar * box.center_lidar_m, box.size_lwh_m,
-          rotated_yaw(box.yaw_rad, T_odom_lidar.rotation())};
+PlacedBox place(const Box3d& box, const SE3& T_map_lidar) {
+  return {T_map_lidar * box.center_lidar_m, box.size_lwh_m, rotated_yaw(box.yaw_rad, T_map_lidar.rotation())};
 }
 
-Box3d in_lidar(const PlacedBox& box, const SE3& T_odom_lidar) {
-  const SE3 T_lidar_odom = T_odom_lidar.inverse();
-  return {T_lidar_odom * box.center_odom_m, box.size_lwh_m,
-          rotated_yaw(box.yaw_rad, T_lidar_odom.rotation())};
+Box3d in_lidar(const PlacedBox& box, const SE3& T_map_lidar) {
+  const SE3 T_lidar_map = T_map_lidar.inverse();
+  return {T_lidar_map * box.center_map_m, box.size_lwh_m, rotated_yaw(box.yaw_rad, T_lidar_map.rotation())};
 }
 
 double wrapped_angle(double angle_rad) {
@@ -31,7 +29,7 @@ double wrapped_angle(double angle_rad) {
 
 double footprint_overlap(const PlacedBox& a, const PlacedBox& b) {
   const double reach_m = 0.5 * (a.size_lwh_m.head<2>().norm() + b.size_lwh_m.head<2>().norm());
-  if ((a.center_odom_m - b.center_odom_m).head<2>().norm() > reach_m) return 0.0;
+  if ((a.center_map_m - b.center_map_m).head<2>().norm() > reach_m) return 0.0;
   const bool a_smaller = a.size_lwh_m.x() * a.size_lwh_m.y() < b.size_lwh_m.x() * b.size_lwh_m.y();
   const PlacedBox& small = a_smaller ? a : b;
   const PlacedBox& large = a_smaller ? b : a;
@@ -40,7 +38,7 @@ double footprint_overlap(const PlacedBox& a, const PlacedBox& b) {
   constexpr int kAcross = 6;
   const Eigen::Rotation2Dd rotation(small.yaw_rad - large.yaw_rad);
   const Eigen::Vector2d offset_m = Eigen::Rotation2Dd(-large.yaw_rad) *
-                                   Eigen::Vector2d((small.center_odom_m - large.center_odom_m).head<2>());
+                                   Eigen::Vector2d((small.center_map_m - large.center_map_m).head<2>());
   int inside = 0;
   for (int i = 0; i < kAlong * kAcross; ++i) {
     const Eigen::Vector2d p((i % kAlong + 0.5) / kAlong - 0.5, (i / kAlong + 0.5) / kAcross - 0.5);

@@ -22,10 +22,10 @@ bool is_wheeled(ObjectClass object_class) {
   return object_class != ObjectClass::pedestrian && object_class != ObjectClass::other;
 }
 
-Box3d box_at(const SE3& T_odom_object, const Eigen::Vector3d& size_lwh_m, const SE3& T_odom_lidar) {
-  const Eigen::Vector3d heading = T_odom_object.rotation() * Eigen::Vector3d::UnitX();
-  return in_lidar({T_odom_object.translation(), size_lwh_m, std::atan2(heading.y(), heading.x())},
-                  T_odom_lidar);
+Box3d box_at(const SE3& T_map_object, const Eigen::Vector3d& size_lwh_m, const SE3& T_map_lidar) {
+  const Eigen::Vector3d heading = T_map_object.rotation() * Eigen::Vector3d::UnitX();
+  return in_lidar({T_map_object.translation(), size_lwh_m, std::atan2(heading.y(), heading.x())},
+                  T_map_lidar);
 }
 
 double field_of_view_rad(const LifecycleConfig& config) {
@@ -35,11 +35,11 @@ double field_of_view_rad(const LifecycleConfig& config) {
 }  // namespace
 
 std::vector<Tracker::Observation> Tracker::observe(std::span<const Detection> detections,
-                                                   const SE3& T_odom_lidar) const {
+                                                   const SE3& T_map_lidar) const {
   std::vector<Observation> observations;
   for (std::size_t i = 0; i < detections.size(); ++i) {
     if (!is_usable(detections[i])) continue;
-    observations.push_back({.measurement = measure(detections[i], T_odom_lidar, config_.box_noise),
+    observations.push_back({.measurement = measure(detections[i], T_map_lidar, config_.box_noise),
                             .object_class = detections[i].object_class,
                             .logit = confidence_logit(detections[i].confidence),
                             .range_m = detections[i].box.center_lidar_m.norm(),
@@ -48,32 +48,32 @@ std::vector<Tracker::Observation> Tracker::observe(std::span<const Detection> de
   return observations;
 }
 
-std::vector<TrackedObject> Tracker::process(std::span<const Detection> detections, const SE3& T_odom_lidar,
+std::vector<TrackedObject> Tracker::process(std::span<const Detection> detections, const SE3& T_map_lidar,
                                             double dt_s) {
-  T_odom_lidar_ = T_odom_lidar;
+  T_map_lidar_ = T_map_lidar;
   for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
-  commit(observe(detections, T_odom_lidar));
+  commit(observe(detections, T_map_lidar));
   return describe_all();
 }
 
 std::vector<TrackedObject> Tracker::process(std::span<const Detection> detections, double dt_s) {
   for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
-  const SE3 T_odom_lidar = estimate_pose(detections);
-  if (started_) last_increment_ = T_odom_lidar_.inverse() * T_odom_lidar;
-  T_odom_lidar_ = T_odom_lidar;
+  const SE3 T_map_lidar = estimate_pose(detections);
+  if (started_) last_increment_ = T_map_lidar_.inverse() * T_map_lidar;
+  T_map_lidar_ = T_map_lidar;
   started_ = true;
-  commit(observe(detections, T_odom_lidar));
+  commit(observe(detections, T_map_lidar));
   return describe_all();
 }
 
 SE3 Tracker::estimate_pose(std::span<const Detection> detections) const {
   constexpr int kRounds = 2;  // the second associates with the pose that the first found
-  const SE3 predicted = T_odom_lidar_ * last_increment_;
-  SE3 T_odom_lidar = predicted;
+  const SE3 predicted = T_map_lidar_ * last_increment_;
+  SE3 T_map_lidar = predicted;
   std::vector<AssociationTrack> tracks;
   for (const Track& track : tracks_) tracks.push_back({&track.filter, track.object_class});
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Observation> observations = observe(detections, T_odom_lidar);
+    const std::vector<Observation> observations = observe(detections, T_map_lidar);
     std::vector<AssociationDetection> candidates;
     for (const Observation& o : observations) candidates.push_back({&o.measurement, o.object_class});
     AssociationConfig wide = config_.association;
@@ -86,21 +86,21 @@ SE3 Tracker::estimate_pose(std::span<const Detection> detections) const {
           0.5 * filter.planar_covariance().topLeftCorner<2, 2>().trace() +
           0.5 * (std::pow(o.measurement.along_sd_m, 2) + std::pow(o.measurement.across_sd_m, 2));
       pairs.push_back({.measured_lidar_m = detections[o.index].box.center_lidar_m.head<2>(),
-                       .predicted_odom_m = filter.box().center_odom_m.head<2>(),
+                       .predicted_map_m = filter.box().center_map_m.head<2>(),
                        .sd_m = std::sqrt(variance)});
     }
-    T_odom_lidar = ego_from_boxes(pairs, predicted, {});
+    T_map_lidar = ego_from_boxes(pairs, predicted, {});
   }
-  return T_odom_lidar;
+  return T_map_lidar;
 }
 
-std::vector<TrackedObject> Tracker::process(std::span<const ObjectPoints> objects, const SE3& T_odom_lidar,
+std::vector<TrackedObject> Tracker::process(std::span<const ObjectPoints> objects, const SE3& T_map_lidar,
                                             double dt_s, const SweepTiming& timing) {
-  T_odom_lidar_ = T_odom_lidar;
+  T_map_lidar_ = T_map_lidar;
   for (Track& track : tracks_) track.filter.predict(dt_s, config_.motion);
   std::vector<Detection> detections;
   for (const ObjectPoints& object : objects) detections.push_back(object.detection);
-  commit(observe(detections, T_odom_lidar));
+  commit(observe(detections, T_map_lidar));
   parallel_for_each_index(tracks_.size(), [&](std::size_t i) {
     if (tracks_[i].detection) update_odometry(tracks_[i], objects[*tracks_[i].detection], dt_s, timing);
   });
@@ -111,19 +111,19 @@ void Tracker::update_odometry(Track& track, const ObjectPoints& object, double d
                               const SweepTiming& timing) {
   track.num_points = object.points.size();
   const ObjectSighting sighting{.points = object.points,
-                                .measurement = measure(object.detection, T_odom_lidar_, config_.box_noise),
+                                .measurement = measure(object.detection, T_map_lidar_, config_.box_noise),
                                 .confidence = std::clamp(object.detection.confidence, 0.0, 1.0),
-                                .T_odom_lidar = T_odom_lidar_};
+                                .T_map_lidar = T_map_lidar_};
   if (!track.odometry) {
     track.odometry.emplace(sighting, timing, config_.sgf);
     return;
   }
   const PlacedBox box = track.filter.box();
-  const SE3 before = track.odometry->T_odom_object();
+  const SE3 before = track.odometry->T_map_object();
   const int scans_since = track.misses_before + 1;
   track.relative_motion =
-      track.odometry->update(sighting, box.T_odom_object(), box.size_lwh_m, scans_since, timing, config_.sgf);
-  const SE3& now = track.odometry->T_odom_object();
+      track.odometry->update(sighting, box.T_map_object(), box.size_lwh_m, scans_since, timing, config_.sgf);
+  const SE3& now = track.odometry->T_map_object();
   if (track.relative_motion.usable() && dt_s > 0.0) {
     const Eigen::Vector3d velocity_mps = (now.translation() - before.translation()) / (dt_s * scans_since);
     const double variance = track.relative_motion.covariance.topLeftCorner<2, 2>().trace();
@@ -187,7 +187,7 @@ void Tracker::associate_and_update(std::vector<Observation>& observations, bool 
 
 void Tracker::miss_unmatched() {
   std::vector<Box3d> boxes;
-  for (const Track& track : tracks_) boxes.push_back(in_lidar(track.filter.box(), T_odom_lidar_));
+  for (const Track& track : tracks_) boxes.push_back(in_lidar(track.filter.box(), T_map_lidar_));
   const std::vector<double> hidden = hidden_shares(boxes);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
@@ -241,9 +241,9 @@ TrackedObject Tracker::describe(const Track& track) const {
   TrackedObject object{.id = track.id,
                        .object_class = track.object_class,
                        .state = track.state,
-                       .box = in_lidar(placed, T_odom_lidar_),
-                       .T_odom_object = placed.T_odom_object(),
-                       .velocity_odom_mps = track.filter.velocity_mps(),
+                       .box = in_lidar(placed, T_map_lidar_),
+                       .T_map_object = placed.T_map_object(),
+                       .velocity_map_mps = track.filter.velocity_mps(),
                        .turn_rate_radps = track.filter.turn_rate_radps(),
                        .moving_probability = track.filter.moving_probability(),
                        .planar_covariance = track.filter.planar_covariance(),
@@ -256,8 +256,8 @@ TrackedObject Tracker::describe(const Track& track) const {
                        .num_points = track.num_points,
                        .relative_motion = track.relative_motion};
   if (track.odometry && track.detection) {
-    object.T_odom_object = track.odometry->T_odom_object();
-    object.box = box_at(object.T_odom_object, placed.size_lwh_m, T_odom_lidar_);
+    object.T_map_object = track.odometry->T_map_object();
+    object.box = box_at(object.T_map_object, placed.size_lwh_m, T_map_lidar_);
   }
   const double sd_m = std::sqrt(object.planar_covariance.topLeftCorner<2, 2>().trace());
   const bool shown_without_detection = sd_m <= config_.lifecycle.max_report_sd_m &&

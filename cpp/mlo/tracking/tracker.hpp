@@ -26,11 +26,12 @@ struct TrackedObject {
   TrackState state = TrackState::tentative;
   bool reported = false;  ///< believed, and known well enough to be shown
   Box3d box;              ///< in the lidar frame
-  SE3 T_odom_object;
-  Eigen::Vector2d velocity_odom_mps = Eigen::Vector2d::Zero();
+  SE3 T_map_object;
+  Eigen::Vector2d velocity_map_mps = Eigen::Vector2d::Zero();
   double turn_rate_radps = 0.0;
   double moving_probability = 0.5;
-  /// Of [x; y; vx; vy] in the odometry frame, [m] and [m/s].
+  bool is_moving() const { return moving_probability > 0.5; }
+  /// Of [x; y; vx; vy] in the map frame, [m] and [m/s].
   ObjectFilter::Matrix4d planar_covariance = ObjectFilter::Matrix4d::Zero();
   Eigen::Matrix2d yaw_covariance = Eigen::Matrix2d::Zero();  ///< of [yaw; turn rate], [rad] and [rad/s]
   double existence = 0.0;                                    ///< log-odds
@@ -50,10 +51,10 @@ class Tracker {
   explicit Tracker(const TrackingConfig& config) : config_(config) {}
 
   /// @param detections    of one scan, in the lidar frame; boxes that are not finite are left out
-  /// @param T_odom_lidar  pose of the lidar at that scan
+  /// @param T_map_lidar  pose of the lidar at that scan
   /// @param dt_s          time since the scan before; scans without detections must be given too
   /// @return all tracks that live, by id
-  std::vector<TrackedObject> process(std::span<const Detection> detections, const SE3& T_odom_lidar,
+  std::vector<TrackedObject> process(std::span<const Detection> detections, const SE3& T_map_lidar,
                                      double dt_s);
 
   /// The same where nothing is known of the lidar's motion: it is estimated from the boxes themselves, of
@@ -63,11 +64,11 @@ class Tracker {
   /// The same with the objects' points: the pose of each is then accumulated from its motions by
   /// semantic-geometric fusion (paper, section III-C-2 and -3), which also tell its velocity. Objects run in
   /// parallel; the result does not depend on the number of threads.
-  std::vector<TrackedObject> process(std::span<const ObjectPoints> objects, const SE3& T_odom_lidar,
+  std::vector<TrackedObject> process(std::span<const ObjectPoints> objects, const SE3& T_map_lidar,
                                      double dt_s, const SweepTiming& timing);
 
   /// Pose of the lidar at the last scan, as given or estimated.
-  const SE3& T_odom_lidar() const { return T_odom_lidar_; }
+  const SE3& T_map_lidar() const { return T_map_lidar_; }
 
  private:
   struct Track {
@@ -96,7 +97,7 @@ class Tracker {
     bool taken = false;
   };
 
-  std::vector<Observation> observe(std::span<const Detection> detections, const SE3& T_odom_lidar) const;
+  std::vector<Observation> observe(std::span<const Detection> detections, const SE3& T_map_lidar) const;
   SE3 estimate_pose(std::span<const Detection> detections) const;
   void commit(std::vector<Observation> observations);
   void update_odometry(Track& track, const ObjectPoints& object, double dt_s, const SweepTiming& timing);
@@ -109,7 +110,7 @@ class Tracker {
 
   TrackingConfig config_;
   std::vector<Track> tracks_;
-  SE3 T_odom_lidar_;
+  SE3 T_map_lidar_;
   SE3 last_increment_;
   bool started_ = false;
   long next_id_ = 1;
