@@ -121,6 +121,18 @@ TEST(Tracker, TwoIdenticalBoxesAreOneReportedObject) {
   EXPECT_EQ(reported.size(), 1U);
 }
 
+TEST(Tracker, AFalseAlarmOfAnotherKindDoesNotEndABelievedTrack) {
+  Tracker tracker({});
+  for (int i = 0; i < 10; ++i) tracker.process(std::vector<Detection>{car(15.0, 0.0)}, SE3(), kDt_s);
+  const Detection pedestrian{
+      ObjectClass::pedestrian, {.center_lidar_m = {15.5, 0.3, -1.0}, .size_lwh_m = {0.8, 0.7, 1.7}}, 0.5};
+  tracker.process(std::vector<Detection>{pedestrian}, SE3(), kDt_s);  // in place of the car, once
+  const auto objects = tracker.process(std::vector<Detection>{car(15.0, 0.0)}, SE3(), kDt_s);
+  ASSERT_NE(find(objects, 1), nullptr);
+  EXPECT_EQ(find(objects, 1)->hits, 11);
+  EXPECT_EQ(objects.size(), 1U) << "the false alarm ends where the car is seen again";
+}
+
 TEST(Tracker, BoxesThatAreNoBoxesAreLeftOut) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -147,7 +147,7 @@ struct LifecycleConfig {
           "a predicted track is reported while its position is known this well, standard deviation [m]");
     visit("max_overlap", max_overlap, between(0.0, 1.0),
           "objects do not stand in each other: of two that share more of their ground area, the one without "
-          "detection or belief ends");
+          "detection ends; the less believed one, if they are of different kinds");
   }
 };
 

@@ -227,6 +227,9 @@ void Tracker::end_tracks() {
   const auto gives_way = [&](const Track& track) {
     return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& other) {
       if (other.id == track.id || !other.detection || track.detection) return false;
+      // A box of another kind is not this object under a new name: only the better believed one counts.
+      const bool may_be_the_same = same_kind(track.object_class, other.object_class);
+      if (!may_be_the_same && other.existence <= track.existence) return false;
       return footprint_overlap(track.filter.box(), other.filter.box()) > config_.lifecycle.max_overlap;
     });
   };
