@@ -102,7 +102,7 @@ struct RefinementConfig {
 /// The long-term map that is saved.
 struct StaticMapConfig {
   double voxel_m = 0.2;
-  int free_space_every = 2;
+  int free_space_every = 4;
   double free_space_range_m = 60.0;
   double free_space_margin_m = 0.2;
   double free_space_margin_per_range = 0.005;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxRows = 128;
 // Elevations are compared by their tangents: cheaper, and nearly the same over a lidar's field of view.
 double tangent(const Eigen::Vector3d& p) {
-  return p.z() / std::hypot(p.x(), p.y());
+  return p.z() / p.head<2>().norm();
 }
 
 std::size_t index(int row, int column, int columns) {
@@ -59,7 +59,9 @@ RangeImage::RangeImage(std::span<const Point> points) {
 }
 
 int RangeImage::column(double x, double y) const {
-  const double share = 0.5 + 0.5 * std::atan2(y, x) / std::numbers::pi;
+  const double share =
+      0.5 +
+      0.5 * static_cast<double>(std::atan2(static_cast<float>(y), static_cast<float>(x))) / std::numbers::pi;
   return std::min(kColumns - 1, static_cast<int>(share * kColumns));
 }
 

@@ -46,16 +46,18 @@ void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const 
 
 void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
                        const SE3& T_map_lidar, std::span<const Box3d> moving) {
+  Tile* tile = nullptr;
   for (const FeaturePoint& feature : features) {
     const Eigen::Vector3d p_lidar =
         motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
     const auto is_near = [&](const Box3d& box) { return box.contains(p_lidar, config_.moving_margin_m); };
     if (std::any_of(moving.begin(), moving.end(), is_near)) continue;
     const Eigen::Vector3f p_map = (T_map_lidar * p_lidar).cast<float>();
-    Tile& tile = tile_at(p_map);
-    const auto next = static_cast<std::uint32_t>(tile.entries.size());
-    const auto [place, is_new] = tile.index.try_emplace(voxel_key(p_map, inverse_voxel_), next);
-    if (is_new) tile.entries.push_back({{p_map, feature.intensity, label}});
+    // Neighbours in a scan are neighbours in the map.
+    if (tile == nullptr || tile->key != tile_key(p_map)) tile = &tile_at(p_map);
+    const auto next = static_cast<std::uint32_t>(tile->entries.size());
+    const auto [place, is_new] = tile->index.try_emplace(voxel_key(p_map, inverse_voxel_), next);
+    if (is_new) tile->entries.push_back({{p_map, feature.intensity, label}});
   }
 }
 
