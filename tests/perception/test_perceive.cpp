@@ -153,7 +153,8 @@ TEST_P(PerceiveReal, FindsTheRoadAndEnoughFeatures) {
     EXPECT_LT(share, 0.85);  // an empty motorway is nearly all road
     EXPECT_GT(seen.ground.features.size(), 500U);
     EXPECT_LT(seen.ground.features.size(), 1600U);
-    EXPECT_GT(seen.edge.features.size(), 250U);
+    // Noise of smooth surfaces is no edge (min_edge_smoothness): the motorway has some 200 poles and rims.
+    EXPECT_GT(seen.edge.features.size(), 150U);
     EXPECT_LT(seen.edge.features.size(), 1600U);
     EXPECT_GT(seen.surface.features.size(), 250U);
     EXPECT_LT(seen.surface.features.size(), 1900U);
