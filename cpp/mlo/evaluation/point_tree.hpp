@@ -6,22 +6,12 @@
 #include <Eigen/Core>
 #include <nanoflann.hpp>
 
+#include "mlo/core/kd_tree_points.hpp"
+
 // Internal to evaluation: points, their neighbours, and what these look like.
 namespace mlo {
 
-/// Points as nanoflann wants to see them.
-struct PointCloud {
-  std::vector<Eigen::Vector3f> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<Eigen::Index>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
+using PointCloud = KdTreePoints<std::vector<Eigen::Vector3f>>;
 
 /// PointTree(3, cloud); the cloud must outlive it, not be empty and hold finite points only.
 using PointTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointCloud>,

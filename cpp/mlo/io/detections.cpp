@@ -170,6 +170,12 @@ std::span<const DetectionRecord> DetectionList::at(std::size_t frame, double sta
   return nearest->second;
 }
 
+std::vector<Detection> DetectionList::detections_at(std::size_t frame, double stamp_s) const {
+  std::vector<Detection> detections;
+  for (const DetectionRecord& record : at(frame, stamp_s)) detections.push_back(record.detection);
+  return detections;
+}
+
 std::size_t DetectionList::count() const {
   std::size_t count = 0;
   for (const auto& [frame, records] : by_frame) count += records.size();

@@ -29,6 +29,8 @@ struct DetectionList {
   /// The detections of a scan: those of its frame, or those of the nearest stamp within the tolerance.
   /// In the order of the files; empty when there are none. Valid as long as the list lives.
   std::span<const DetectionRecord> at(std::size_t frame, double stamp_s) const;
+  /// The same without what the files say beside the boxes.
+  std::vector<Detection> detections_at(std::size_t frame, double stamp_s) const;
   std::size_t count() const;
 };
 

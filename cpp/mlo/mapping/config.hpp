@@ -58,14 +58,13 @@ struct RefinementConfig {
 
   template <class Visitor>
   void fields(Visitor& visit) {
-    visit(
-        "shape_model", shape_model,
-        Choices<ShapeModel>{{"loam", ShapeModel::loam}, {"distribution", ShapeModel::distribution}},
-        "loam: lines for edges, planes for the rest, as in the paper; distribution: planes where it is flat, "
-        "elsewhere whitened by the spread of the neighbours");
+    visit("shape_model", shape_model,
+          Choices<ShapeModel>{{"loam", ShapeModel::loam}, {"distribution", ShapeModel::distribution}},
+          "loam: lines for edges, planes for the rest, as in the paper; distribution: planes where it "
+          "is flat, elsewhere whitened by the spread of the neighbours");
     visit("correct_distortion", correct_distortion, Anything{},
-          "true: distortion follows the pose while it is refined; false: it is removed once, with odometry's "
-          "increment, as in the paper");
+          "true: distortion follows the pose while it is refined; false: it is removed once, with "
+          "odometry's increment, as in the paper");
     visit("source_voxel_m", source_voxel_m, between(0.05, 10.0),
           "the scan is thinned to one point per voxel: accuracy against time [m]");
     visit("neighbours", neighbours, between(5, 20), "map points that make a neighbourhood");
@@ -117,29 +116,26 @@ struct StaticMapConfig {
     visit("voxel_m", voxel_m, between(0.01, 10.0),
           "one point per voxel is kept: detail against memory and file size [m]");
     visit("free_space_every", free_space_every, between(0, 1000),
-          "every n-th scan votes on the points that it sees or sees through; those with votes below zero are "
-          "not "
-          "part of the map: what moves, detected or not; 0 keeps all, as in the paper");
+          "every n-th scan votes on the points that it sees or sees through; those with votes below "
+          "zero are not part of the map: what moves, detected or not; 0 keeps all, as in the paper");
     visit("free_space_range_m", free_space_range_m, between(1.0, 500.0),
           "how far from the robot this is done: completeness against time [m]");
     visit("free_space_margin_m", free_space_margin_m, between(0.0, 10.0),
-          "a ray that ends this much beyond a point went through it: lower removes more, of what stands too "
-          "[m]");
+          "a ray that ends this much beyond a point went through it: lower removes more, of what stands "
+          "too [m]");
     visit("free_space_margin_per_range", free_space_margin_per_range, between(0.0, 1.0),
           "added to the margin for each metre of range");
     visit("free_space_hit_votes", free_space_hit_votes, between(0.0, 100.0),
-          "a ray that ends at a point votes this much for it, one that went through one vote against it: "
-          "higher "
-          "keeps more of what is thin");
+          "a ray that ends at a point votes this much for it, one that went through one vote against "
+          "it: higher keeps more of what is thin");
     visit("free_space_max_votes", free_space_max_votes, between(1.0, 1000.0),
           "no more votes are kept for or against a point: lower follows changes sooner");
     visit("free_space_sure_votes", free_space_sure_votes, between(0.0, 1000.0),
-          "points with fewer votes are left out where their surroundings were seen through: higher removes "
-          "more, of "
-          "what stands too");
+          "points with fewer votes are left out where their surroundings were seen through: higher "
+          "removes more, of what stands too");
     visit("moving_margin_m", moving_margin_m, between(0.0, 5.0),
-          "boxes of tracks that move count as this much larger on every side, so that nothing of them is "
-          "added [m]");
+          "boxes of tracks that move count as this much larger on every side, so that nothing of them "
+          "is added [m]");
     visit("memory_radius_m", memory_radius_m, between(50.0, 1e6),
           "what is farther from the robot waits on disk: memory against reading it again on return [m]");
   }

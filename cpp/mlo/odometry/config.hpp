@@ -26,25 +26,24 @@ struct ConsistencyConfig {
   template <class Visitor>
   void fields(Visitor& visit) {
     visit("min_share", min_share, between(0.0, 1.0),
-          "th_r: a set passes with at least this share of all features; higher refuses scenes that mostly "
-          "move");
+          "th_r: a set passes with at least this share of all features; higher refuses scenes that "
+          "mostly move");
     visit("min_ground_share", min_ground_share, between(0.0, 1.0),
           "th_g: the same of the ground features; higher refuses motions that leave the ground");
     visit(
         "min_background_share", min_background_share, between(0.0, 1.0),
         "th_b: the same of edge and surface features; higher refuses motions that only the ground supports");
     visit("min_gain", min_gain, between(0.0, 1.0),
-          "a motion replaces the best so far, at first the prediction, with this much more share; higher "
-          "holds on to "
-          "the prediction when as much moves as stands; 0 is the paper's");
+          "a motion replaces the best so far, at first the prediction, with this much more share; "
+          "higher holds on to the prediction when as much moves as stands; 0 is the paper's");
     visit("iterations", iterations, between(1, 1000),
-          "N_iter: motions that are tried; more find the static part of a scene with more movers, at more "
-          "time");
+          "N_iter: motions that are tried; more find the static part of a scene with more movers, at "
+          "more time");
     visit("match_interval", match_interval, between(1, 1000),
           "lambda: matches are renewed at the best motion every so many iterations");
     visit("sample_size", sample_size, between(2, 1000),
-          "matches of the ground, and of the background, drawn for each motion; fewer are more often free of "
-          "movers, more average noise better");
+          "matches of the ground, and of the background, drawn for each motion; fewer are more often "
+          "free of movers, more average noise better");
     visit("max_counted", max_counted, between(10, 100000),
           "features of each kind that are counted for a motion; more judge better, at more time");
     visit(
@@ -89,11 +88,10 @@ struct OdometryConfig {
   void fields(Visitor& visit) {
     visit("enabled", enabled, Anything{},
           "off: the map refinement starts from constant motion alone; faster, less robust");
-    visit(
-        "estimator", estimator,
-        Choices<Estimator>{{"two_step", Estimator::two_step}, {"joint", Estimator::joint}},
-        "two_step: height, roll and pitch from the ground, then the rest from the background, as the paper; "
-        "joint: all six at once");
+    visit("estimator", estimator,
+          Choices<Estimator>{{"two_step", Estimator::two_step}, {"joint", Estimator::joint}},
+          "two_step: height, roll and pitch from the ground, then the rest from the background, as the "
+          "paper; joint: all six at once");
     visit("consistency_check", consistency_check, Anything{},
           "remove features that move against the rest before estimating; off is the paper's MLO-gc");
     visit.group("consistency", consistency, "Geometric consistency check (Algorithm 1).");

@@ -7,25 +7,13 @@
 #include <nanoflann.hpp>
 #include <tbb/parallel_invoke.h>
 
+#include "mlo/core/kd_tree_points.hpp"
 #include "mlo/odometry/thinning.hpp"
 
 namespace mlo {
 namespace {
 
-// Points as nanoflann wants to see them.
-struct Cloud {
-  std::span<const Eigen::Vector3f> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<Eigen::Index>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
-
+using Cloud = KdTreePoints<std::span<const Eigen::Vector3f>>;
 using KdTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::uint32_t>;
 

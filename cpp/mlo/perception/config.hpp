@@ -71,17 +71,15 @@ struct FeatureConfig {
     visit("surfaces_per_segment", surfaces_per_segment, between(0, 100),
           "flattest background points taken per segment; more match better and cost time");
     visit("min_edge_smoothness", min_edge_smoothness, between(0.0, 10.0),
-          "an edge is at least this sharp (c of LOAM); higher keeps poles and jumps of depth only, lower "
-          "takes the "
-          "noise of smooth walls for edges, which hides that a tunnel is degenerate");
+          "an edge is at least this sharp (c of LOAM); higher keeps poles and jumps of depth only, "
+          "lower takes the noise of smooth walls for edges, which hides that a tunnel is degenerate");
     visit("max_surface_smoothness", max_surface_smoothness, between(0.0, 10.0),
           "a surface feature is at most this rough (c of LOAM); lower keeps smooth walls only");
     visit("candidate_voxel_m", candidate_voxel_m, between(0.01, 5.0),
           "one ground and one surface candidate per voxel of this side [m]; smaller is finer and slower");
-    visit(
-        "no_line_voxel_m", no_line_voxel_m, between(0.1, 20.0),
-        "scans without rings: one ground and one surface feature per voxel of this side [m]; smaller matches "
-        "more and costs time");
+    visit("no_line_voxel_m", no_line_voxel_m, between(0.1, 20.0),
+          "scans without rings: one ground and one surface feature per voxel of this side [m]; smaller "
+          "matches more and costs time");
   }
 };
 

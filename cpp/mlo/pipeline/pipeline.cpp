@@ -114,7 +114,7 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
   const SE3 T_map_lidar =
       result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
   result.objects = timed(times, Stage::tracking, [&] { return track(prepared, seen, T_map_lidar, sweep); });
-  timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, sweep, result); });
+  timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, T_map_lidar, sweep, result); });
   return result;
 }
 
@@ -220,10 +220,8 @@ bool Pipeline::looks_for_free_space(std::size_t frame) const {
   return every > 0 && frame % static_cast<std::size_t>(every) == 0;
 }
 
-void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
-                      FrameResult& result) {
-  const SE3 T_map_lidar =
-      result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
+void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
+                      const SweepTiming& timing, FrameResult& result) {
   const bool follow_map = config_.mapping.refinement.correct_distortion;
   const SE3 increment = follow_map && !state_.empty ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
   const SweepMotion motion = SweepMotion::from_increment(increment, timing);

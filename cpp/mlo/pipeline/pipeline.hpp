@@ -65,8 +65,8 @@ class Pipeline {
   void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
 
   bool looks_for_free_space(std::size_t frame) const;
-  void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SweepTiming& timing,
-              FrameResult& result);
+  void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
+              const SweepTiming& timing, FrameResult& result);
 
   PipelineConfig config_;
   State state_;

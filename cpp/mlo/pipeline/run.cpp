@@ -33,15 +33,6 @@ std::vector<std::size_t> select_indices(const Dataset& dataset, const RunOptions
   return indices;
 }
 
-std::vector<Detection> detections_of(const std::optional<DetectionList>& list, const Scan& scan) {
-  std::vector<Detection> detections;
-  if (!list) return detections;
-  for (const DetectionRecord& record : list->at(scan.frame, scan.stamp_s)) {
-    detections.push_back(record.detection);
-  }
-  return detections;
-}
-
 // Boxes that hold no points are most often in the wrong frame, unit or convention. Looks at scans from all
 // over the sequence.
 void warn_of_strange_boxes(const Dataset& dataset, const std::vector<std::size_t>& indices,
@@ -53,7 +44,7 @@ void warn_of_strange_boxes(const Dataset& dataset, const std::vector<std::size_t
   for (std::size_t i = 0; i < indices.size(); i += step) {
     ScanReading reading = dataset.scans->read(indices[i]);
     if (!reading.scan) continue;
-    std::vector<Detection> boxes = detections_of(list, *reading.scan);
+    std::vector<Detection> boxes = list.detections_at(reading.scan->frame, reading.scan->stamp_s);
     if (boxes.empty()) continue;
     scans.push_back(std::move(*reading.scan));
     samples.push_back({scans.back().points, std::move(boxes)});
@@ -77,6 +68,18 @@ void skip(std::size_t frame, const std::string& problem, double sweeps_ahead, co
   ++summary.skipped;
   if (summary.skipped <= kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("scan {} was skipped: {}", frame, problem));
+  }
+}
+
+// What is written once, at the end.
+void finish(const Pipeline& pipeline, const RunOutput& output, RunSummary& summary) {
+  const std::vector<MapPoint> map = pipeline.static_map().points();
+  output.write_map(map);
+  output.write_object_trajectories();
+  summary.map_points = map.size();
+  if (summary.skipped > kMaxListedProblems) {
+    summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
+                                           summary.skipped - kMaxListedProblems));
   }
 }
 
@@ -116,7 +119,8 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
       skip(dataset.scans->frame(indices[i]), reading.problem, ++skipped_in_a_row, pipeline, output, summary);
     } else {
       skipped_in_a_row = 0.0;
-      const std::vector<Detection> boxes = detections_of(detections, *reading.scan);
+      std::vector<Detection> boxes;
+      if (detections) boxes = detections->detections_at(reading.scan->frame, reading.scan->stamp_s);
       summary.detections += boxes.size();
       const FrameResult result = pipeline.process(*reading.scan, boxes);
       output.write(result);
@@ -132,14 +136,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
     }
     if (on_scan) on_scan(i + 1, indices.size());
   }
-  const std::vector<MapPoint> map = pipeline.static_map().points();
-  output.write_map(map);
-  output.write_object_trajectories();
-  summary.map_points = map.size();
-  if (summary.skipped > kMaxListedProblems) {
-    summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
-                                           summary.skipped - kMaxListedProblems));
-  }
+  finish(pipeline, output, summary);
   write_file_atomically(options.out / "run.json", to_json(dataset, config, summary));
   if (summary.processed == 0 && !summary.interrupted) {
     throw InputError(fmt::format("{}: none of the {} scans could be used; the first problem: {}",

@@ -1,5 +1,6 @@
 #include "mlo/pipeline/track_detections.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -20,12 +21,6 @@ std::map<std::size_t, SE3> poses_by_frame(const PoseList& poses) {
   for (std::size_t i = 0; i < poses.frames.size(); ++i)
     by_frame.emplace(poses.frames[i], poses.T_world_body[i]);
   return by_frame;
-}
-
-std::vector<Detection> detections_at(const DetectionList& list, std::size_t frame, double stamp_s) {
-  std::vector<Detection> detections;
-  for (const DetectionRecord& record : list.at(frame, stamp_s)) detections.push_back(record.detection);
-  return detections;
 }
 
 std::size_t frame_count(const DetectionList& list, double scan_interval_s) {
@@ -50,10 +45,11 @@ std::vector<FrameTracks> track_detections(const DetectionList& detections,
   const std::size_t count = frame_count(detections, scan_interval_s);
   for (std::size_t frame = 0; frame < count; ++frame) {
     const double stamp_s = static_cast<double>(frame) * scan_interval_s;
-    const std::vector<Detection> seen = detections_at(detections, frame, stamp_s);
+    const std::vector<Detection> seen = detections.detections_at(frame, stamp_s);
     FrameTracks result;
     result.frame = frame;
     result.stamp_s = stamp_s;
+    const auto start = std::chrono::steady_clock::now();
     if (T_world_lidar) {
       const auto pose = poses.find(frame);
       if (pose == poses.end()) {
@@ -66,6 +62,8 @@ std::vector<FrameTracks> track_detections(const DetectionList& detections,
     } else {
       result.objects = tracker.process(seen, scan_interval_s);
     }
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    result.tracking_ms = elapsed.count();
     result.T_map_lidar = tracker.T_map_lidar();
     frames.push_back(std::move(result));
   }

@@ -18,6 +18,7 @@ struct FrameTracks {
   double stamp_s = 0.0;
   SE3 T_map_lidar;
   std::vector<TrackedObject> objects;
+  double tracking_ms = 0.0;  ///< wall time of the tracker
 };
 
 /// Tracks of a sequence from boxes and poses alone, on line, for every frame from 0 to the last with a

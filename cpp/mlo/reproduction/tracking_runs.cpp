@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <vector>
 
@@ -25,27 +24,6 @@ struct SequenceRun {
   std::vector<double> times_ms;
 };
 
-// Scan by scan, with a clock around the tracker.
-std::vector<FrameTracks> track(const DetectionList& detections, const TrackingConfig& config,
-                               std::vector<double>& times_ms) {
-  Tracker tracker(config);
-  std::vector<FrameTracks> frames;
-  const std::size_t count = detections.by_frame.empty() ? 0 : detections.by_frame.rbegin()->first + 1;
-  for (std::size_t frame = 0; frame < count; ++frame) {
-    std::vector<Detection> seen;
-    for (const DetectionRecord& record : detections.at(frame, 0.0)) seen.push_back(record.detection);
-    const auto start = std::chrono::steady_clock::now();
-    std::vector<TrackedObject> objects = tracker.process(seen, kInterval_s);
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    times_ms.push_back(elapsed.count());
-    frames.push_back({.frame = frame,
-                      .stamp_s = static_cast<double>(frame) * kInterval_s,
-                      .T_map_lidar = tracker.T_map_lidar(),
-                      .objects = std::move(objects)});
-  }
-  return frames;
-}
-
 std::optional<SequenceRun> run_sequence(const KittiData& data, const std::string& sequence) {
   if (!data.calibration || !data.car_detections) return std::nullopt;
   const std::string file_name = sequence + ".txt";
@@ -61,7 +39,9 @@ std::optional<SequenceRun> run_sequence(const KittiData& data, const std::string
   const DetectionList detections = read_detections({boxes}, calibration, {.sequence = sequence});
   TrackingConfig config;
   config.lifecycle.field_of_view_deg = std::min(config.lifecycle.field_of_view_deg, view.width_deg());
-  run.records.tracks = kitti_records(track(detections, config, run.times_ms), view);
+  const std::vector<FrameTracks> frames = track_detections(detections, std::nullopt, kInterval_s, config);
+  for (const FrameTracks& frame : frames) run.times_ms.push_back(frame.tracking_ms);
+  run.records.tracks = kitti_records(frames, view);
   if (const fs::path labels = data.labels.value_or("") / file_name; fs::exists(labels)) {
     run.records.truth = read_kitti_tracks(labels);
   }

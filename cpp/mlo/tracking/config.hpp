@@ -49,8 +49,8 @@ struct ObjectMotionConfig {
   template <class Visitor>
   void fields(Visitor& visit) {
     visit("standing_noise_m", standing_noise_m, between(0.0, 10.0),
-          "drift of a standing object in one second, which is that of the ego poses; larger forgets faster "
-          "[m]");
+          "drift of a standing object in one second, which is that of the ego poses; larger forgets "
+          "faster [m]");
     visit("acceleration_mps2", acceleration_mps2, between(0.01, 100.0),
           "random acceleration of moving objects; larger follows faster and averages less [m/s^2]");
     visit("start_speed_mps", start_speed_mps, between(0.1, 100.0),
@@ -83,8 +83,8 @@ struct AssociationConfig {
     visit("gate", gate, between(0.1, 1000.0),
           "largest squared distance over its variance; larger keeps more identities, and swaps more");
     visit("partial_view", partial_view, between(0.0, 1.0),
-          "standard deviation added to positions, in lengths of the object: boxes of partly seen objects are "
-          "further off than their noise says");
+          "standard deviation added to positions, in lengths of the object: boxes of partly seen "
+          "objects are further off than their noise says");
     visit("size_weight", size_weight, between(0.0, 100.0), "of the difference of sizes over its variance");
     visit("heading_weight", heading_weight, between(0.0, 100.0),
           "of the difference of headings (flips apart) over its variance");
@@ -124,8 +124,8 @@ struct LifecycleConfig {
           "up to here a detector sees what is in plain view [m]");
     visit("blind_range_m", blind_range_m, between(0.0, 1000.0), "from here a miss says nothing [m]");
     visit("field_of_view_deg", field_of_view_deg, between(1.0, 360.0),
-          "sector ahead in which the detector finds objects; outside, and partly outside, tracks are not "
-          "reported without detection, and a miss says nothing [deg]");
+          "sector ahead in which the detector finds objects; outside, and partly outside, tracks are "
+          "not reported without detection, and a miss says nothing [deg]");
     visit("evidence_per_logit", evidence_per_logit, between(0.0, 10.0),
           "log-odds for each logit above; below 1 because false alarms repeat themselves");
     visit("max_evidence", max_evidence, between(0.0, 20.0), "most log-odds from one detection, either way");
@@ -134,8 +134,8 @@ struct LifecycleConfig {
     visit("max_existence", max_existence, between(0.0, 100.0),
           "most log-odds; larger reports long-lived tracks for longer after they were last seen");
     visit("report_existence", report_existence, between(-20.0, 20.0),
-          "log-odds from which a track is confirmed and reported; higher has fewer false alarms and more "
-          "misses");
+          "log-odds from which a track is confirmed and reported; higher has fewer false alarms and "
+          "more misses");
     visit("drop_existence", drop_existence, between(-50.0, 20.0), "log-odds below which a track ends");
     visit("max_coasting", max_coasting, between(0, 1000),
           "scans in a row that a confirmed track is predicted without detection; the paper has 2");
@@ -146,8 +146,8 @@ struct LifecycleConfig {
     visit("max_report_sd_m", max_report_sd_m, between(0.01, 100.0),
           "a predicted track is reported while its position is known this well, standard deviation [m]");
     visit("max_overlap", max_overlap, between(0.0, 1.0),
-          "objects do not stand in each other: of two that share more of their ground area, the one without "
-          "detection ends; the less believed one, if they are of different kinds");
+          "objects do not stand in each other: of two that share more of their ground area, the one "
+          "without detection ends; the less believed one, if they are of different kinds");
   }
 };
 
@@ -178,9 +178,8 @@ struct SgfConfig {
               {"fusion", SgfMode::fusion}, {"semantic", SgfMode::semantic}, {"geometry", SgfMode::geometry}},
           "fusion: points and boxes; semantic: boxes only; geometry: points only");
     visit("centred", centred, Anything{},
-          "planes of boxes about their centre; false: about the lidar, as printed in Eq. (8), where a yaw "
-          "error grows "
-          "with the range");
+          "planes of boxes about their centre; false: about the lidar, as printed in Eq. (8), where a "
+          "yaw error grows with the range");
     visit("printed_weights", printed_weights, Anything{},
           "weights of Eq. (13) as printed; false: both terms in units of their variances");
     visit("kernel", kernel, between(0.0, 100.0),
