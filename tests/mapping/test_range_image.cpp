@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-Eigen::Vector3d direction(double azimuth_deg, double elevation_deg) {
+Eigen::Vector3f direction(double azimuth_deg, double elevation_deg) {
   const double a = azimuth_deg * kDegree;
   const double e = elevation_deg * kDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)).cast<float>();
 }
 
 /// A lidar with 32 scan lines within a vertical cylinder of this radius around it, ahead of which (azimuths
@@ -27,9 +27,8 @@ std::vector<Point> round_room(double radius_m, double wall_m) {
       const double elevation_deg = 10.0 - 0.7 * ring;
       const double horizontal_m = std::abs(azimuth_deg) <= 10.0 ? wall_m : radius_m;
       Point point;
-      point.p_lidar =
-          (direction(azimuth_deg, elevation_deg) * horizontal_m / std::cos(elevation_deg * kDegree))
-              .cast<float>();
+      point.p_lidar = direction(azimuth_deg, elevation_deg) *
+                      static_cast<float>(horizontal_m / std::cos(elevation_deg * kDegree));
       point.ring = static_cast<std::uint16_t>(ring);
       point.sweep_fraction = static_cast<float>(step) / 1800.0F;
       points.push_back(point);
@@ -40,33 +39,33 @@ std::vector<Point> round_room(double radius_m, double wall_m) {
 
 TEST(RangeImage, TellsWhatIsSeenFromWhatIsSeenThroughAndWhatIsHidden) {
   const RangeImage image(round_room(20.0, 8.0));
-  EXPECT_EQ(image.look(20.0 * direction(90.0, 0.0), 0.3), Sight::hit);
-  EXPECT_EQ(image.look(12.0 * direction(90.0, 0.0), 0.3), Sight::through);
-  EXPECT_EQ(image.look(25.0 * direction(90.0, 0.0), 0.3), Sight::unknown);
-  EXPECT_EQ(image.look(8.0 * direction(0.0, 0.0), 0.3), Sight::hit);
-  EXPECT_EQ(image.look(12.0 * direction(0.0, 0.0), 0.3), Sight::unknown) << "behind the wall";
+  EXPECT_EQ(image.look(20.0F * direction(90.0, 0.0), 0.3F), Sight::hit);
+  EXPECT_EQ(image.look(12.0F * direction(90.0, 0.0), 0.3F), Sight::through);
+  EXPECT_EQ(image.look(25.0F * direction(90.0, 0.0), 0.3F), Sight::unknown);
+  EXPECT_EQ(image.look(8.0F * direction(0.0, 0.0), 0.3F), Sight::hit);
+  EXPECT_EQ(image.look(12.0F * direction(0.0, 0.0), 0.3F), Sight::unknown) << "behind the wall";
 }
 
 TEST(RangeImage, WorksAcrossTheSeamBehindTheLidar) {
   const RangeImage image(round_room(20.0, 8.0));
   for (const double azimuth_deg : {179.99, -179.99, 180.0}) {
-    EXPECT_EQ(image.look(12.0 * direction(azimuth_deg, 0.0), 0.3), Sight::through) << azimuth_deg;
+    EXPECT_EQ(image.look(12.0F * direction(azimuth_deg, 0.0), 0.3F), Sight::through) << azimuth_deg;
   }
 }
 
 TEST(RangeImage, BesideTheRimOfANearerSurfaceNothingLooksFree) {
   const RangeImage image(round_room(20.0, 8.0));
-  EXPECT_EQ(image.look(7.9 * direction(10.3, 0.0), 0.3), Sight::unknown);
-  EXPECT_EQ(image.look(7.9 * direction(12.0, 0.0), 0.3), Sight::through);
+  EXPECT_EQ(image.look(7.9F * direction(10.3, 0.0), 0.3F), Sight::unknown);
+  EXPECT_EQ(image.look(7.9F * direction(12.0, 0.0), 0.3F), Sight::through);
 }
 
 TEST(RangeImage, SaysNothingWhereNoRayWent) {
   const RangeImage image(round_room(20.0, 8.0));
-  EXPECT_EQ(image.look(12.0 * direction(90.0, 45.0), 0.3), Sight::unknown);
-  EXPECT_EQ(image.look(12.0 * direction(90.0, -45.0), 0.3), Sight::unknown);
+  EXPECT_EQ(image.look(12.0F * direction(90.0, 45.0), 0.3F), Sight::unknown);
+  EXPECT_EQ(image.look(12.0F * direction(90.0, -45.0), 0.3F), Sight::unknown);
   const RangeImage empty({});
-  EXPECT_EQ(empty.look(direction(0.0, 0.0), 0.3), Sight::unknown);
-  EXPECT_EQ(empty.sweep_fraction(direction(0.0, 0.0)), 0.5);
+  EXPECT_EQ(empty.look(direction(0.0, 0.0), 0.3F), Sight::unknown);
+  EXPECT_EQ(empty.sweep_fraction(direction(0.0, 0.0)), 0.5F);
 }
 
 TEST(RangeImage, KnowsWhenTheLidarLookedInADirection) {

@@ -59,14 +59,15 @@ TEST(CandidateSet, FindsTheNearestOnARingAsBruteForceDoes) {
     const double expected = nearest_distance(points, p, kReach, [&](const FeaturePoint& point) {
       return point.ring == query.ring && point.p_lidar.x() > 0.0F;
     });
-    const auto found =
-        set.nearest_on_ring(p, query.ring, kReach, [](const Eigen::Vector3f& q) { return q.x() > 0.0F; });
+    const auto found = set.nearest_on_ring(RingQuery(p), query.ring, kReach,
+                                           [](const Eigen::Vector3f& q) { return q.x() > 0.0F; });
     EXPECT_NEAR(found ? (set.point(*found) - p).norm() : kReach, expected, 1e-4);
     if (found) {
       EXPECT_EQ(set.ring(*found), query.ring);
     }
   }
-  EXPECT_FALSE(set.nearest_on_ring({1, 1, 0}, 99, 6.0, [](const Eigen::Vector3f&) { return true; }));
+  EXPECT_FALSE(
+      set.nearest_on_ring(RingQuery({1, 1, 0}), 99, 6.0, [](const Eigen::Vector3f&) { return true; }));
 }
 
 TEST(CandidateSet, StaysValidWhenMoved) {

@@ -48,7 +48,7 @@ struct RefinementConfig {
   double gate_shrink = 0.6;
   double kernel_m = 0.2;
   double rematch_distance_m = 0.03;
-  int coarse_stride = 4;
+  int coarse_stride = 8;
   int max_iterations = 15;
   int max_iterations_without_motion = 40;
   double translation_tolerance_m = 1e-3;

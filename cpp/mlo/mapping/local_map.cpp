@@ -88,8 +88,8 @@ void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
       static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
   for (const Eigen::Vector3f& p : points_map) {
     const VoxelKey key = voxel_key(p, inverse_voxel_);
-    std::uint32_t& place = tiles_[Tile::key_of(key)].places[Tile::index_of(key)];
-    if (place == Tile::kNone) place = take_voxel();
+    std::uint32_t& place = blocks_[VoxelBlock::key_of(key)].at(key);
+    if (place == VoxelBlock::kNone) place = take_voxel();
     Voxel& home = voxel(place);
     if (home.count >= config_.max_points_per_voxel) continue;
     const Eigen::Vector3f steps = (p - middle(key)) / step_m_;
@@ -135,7 +135,7 @@ std::uint32_t LocalMap::take_voxel() {
     free_.pop_back();
     return place;
   }
-  if (num_taken_ >> kBlockBits == blocks_.size()) blocks_.emplace_back(std::size_t{1} << kBlockBits);
+  if (num_taken_ >> kPoolBits == pools_.size()) pools_.emplace_back(std::size_t{1} << kPoolBits);
   return num_taken_++;
 }
 
@@ -145,23 +145,23 @@ void LocalMap::forget_beyond_radius(const Eigen::Vector3f& center_map) {
   last_center_map_ = center_map;
   const VoxelKey center = voxel_key(center_map, inverse_voxel_);
   const double radius_voxels = config_.radius_m / config_.voxel_m;
-  for (auto it = tiles_.begin(); it != tiles_.end();) {
+  for (auto it = blocks_.begin(); it != blocks_.end();) {
     const bool is_empty = forget_beyond(it->first, it.value(), center, radius_voxels);
-    it = is_empty ? tiles_.erase(it) : std::next(it);
+    it = is_empty ? blocks_.erase(it) : std::next(it);
   }
 }
 
-// By the keys alone: the points lie elsewhere in memory. True when nothing is left of the tile.
-bool LocalMap::forget_beyond(const VoxelKey& tile_key, Tile& tile, const VoxelKey& center,
+// By the keys alone: the points lie elsewhere in memory. True when nothing is left of the block.
+bool LocalMap::forget_beyond(const VoxelKey& block_key, VoxelBlock& block, const VoxelKey& center,
                              double radius_voxels) {
   bool is_empty = true;
-  for (int x = 0; x < Tile::kSide; ++x) {
-    for (int y = 0; y < Tile::kSide; ++y) {
-      for (int z = 0; z < Tile::kSide; ++z) {
-        const VoxelKey key{tile_key.x * Tile::kSide + x, tile_key.y * Tile::kSide + y,
-                           tile_key.z * Tile::kSide + z};
-        std::uint32_t& place = tile.places[Tile::index_of(key)];
-        if (place == Tile::kNone) continue;
+  for (int x = 0; x < VoxelBlock::kSide; ++x) {
+    for (int y = 0; y < VoxelBlock::kSide; ++y) {
+      for (int z = 0; z < VoxelBlock::kSide; ++z) {
+        const VoxelKey key{block_key.x * VoxelBlock::kSide + x, block_key.y * VoxelBlock::kSide + y,
+                           block_key.z * VoxelBlock::kSide + z};
+        std::uint32_t& place = block.at(key);
+        if (place == VoxelBlock::kNone) continue;
         const Eigen::Vector3d steps(key.x - center.x, key.y - center.y, key.z - center.z);
         if (steps.squaredNorm() <= radius_voxels * radius_voxels) {
           is_empty = false;
@@ -169,7 +169,7 @@ bool LocalMap::forget_beyond(const VoxelKey& tile_key, Tile& tile, const VoxelKe
         }
         voxel(place).count = 0;
         free_.push_back(place);
-        place = Tile::kNone;
+        place = VoxelBlock::kNone;
         --num_voxels_;
       }
     }
@@ -177,40 +177,40 @@ bool LocalMap::forget_beyond(const VoxelKey& tile_key, Tile& tile, const VoxelKe
   return is_empty;
 }
 
-// The voxels around a place, with the tiles that were already looked up.
+// The voxels around a place, with the blocks that were already looked up.
 class LocalMap::Neighbourhood {
  public:
   Neighbourhood(const LocalMap& map, const VoxelKey& center)
-      : map_(map), center_(center), center_tile_(Tile::key_of(center)) {}
+      : map_(map), center_(center), center_block_(VoxelBlock::key_of(center)) {}
 
   /// The voxel some steps (-1, 0 or 1 along each axis) from the centre, if it exists.
   const Voxel* find(const Offset& step) {
     const VoxelKey key{center_.x + step.x, center_.y + step.y, center_.z + step.z};
-    const Tile* tile = find_tile(Tile::key_of(key));
-    if (tile == nullptr) return nullptr;
-    const std::uint32_t place = tile->places[Tile::index_of(key)];
-    return place == Tile::kNone ? nullptr : &map_.voxel(place);
+    const VoxelBlock* block = find_block(VoxelBlock::key_of(key));
+    if (block == nullptr) return nullptr;
+    const std::uint32_t place = block->at(key);
+    return place == VoxelBlock::kNone ? nullptr : &map_.voxel(place);
   }
 
  private:
-  const Tile* find_tile(const VoxelKey& key) {
-    const int index =
-        ((key.x - center_tile_.x + 1) * 3 + (key.y - center_tile_.y + 1)) * 3 + (key.z - center_tile_.z + 1);
+  const VoxelBlock* find_block(const VoxelKey& key) {
+    const int index = ((key.x - center_block_.x + 1) * 3 + (key.y - center_block_.y + 1)) * 3 +
+                      (key.z - center_block_.z + 1);
     const auto bit = std::uint32_t{1} << index;
-    const Tile*& tile = tiles_[static_cast<std::size_t>(index)];
+    const VoxelBlock*& block = known_blocks_[static_cast<std::size_t>(index)];
     if ((known_ & bit) == 0) {
       known_ |= bit;
-      const auto found = map_.tiles_.find(key);
-      tile = found == map_.tiles_.end() ? nullptr : &found->second;
+      const auto found = map_.blocks_.find(key);
+      block = found == map_.blocks_.end() ? nullptr : &found->second;
     }
-    return tile;
+    return block;
   }
 
   const LocalMap& map_;
   VoxelKey center_;
-  VoxelKey center_tile_;
-  std::uint32_t known_ = 0;  // a bit for each of tiles_
-  std::array<const Tile*, 27> tiles_;
+  VoxelKey center_block_;
+  std::uint32_t known_ = 0;  // a bit for each of known_blocks_
+  std::array<const VoxelBlock*, 27> known_blocks_;
 };
 
 NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const {
@@ -248,8 +248,8 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
 }
 
 void LocalMap::clear() {
-  tiles_.clear();
   blocks_.clear();
+  pools_.clear();
   num_voxels_ = 0;
   num_taken_ = 0;
   free_.clear();

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <tsl/robin_map.h>
 
 #include "mlo/core/voxel_grid.hpp"
 #include "mlo/mapping/config.hpp"
+#include "mlo/mapping/voxel_block.hpp"
 
 namespace mlo {
 
@@ -62,43 +62,24 @@ class LocalMap {
     }
   };
 
-  // 4 x 4 x 4 voxels. A query looks most of its 27 voxels up in one or two tiles, not in the hash table.
-  struct Tile {
-    static constexpr int kBits = 2;
-    static constexpr int kSide = 1 << kBits;
-    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-
-    Tile() { places.fill(kNone); }
-    static VoxelKey key_of(const VoxelKey& voxel) {
-      return {voxel.x >> kBits, voxel.y >> kBits, voxel.z >> kBits};
-    }
-    static std::size_t index_of(const VoxelKey& voxel) {
-      constexpr int mask = kSide - 1;
-      const int index = ((((voxel.x & mask) << kBits) | (voxel.y & mask)) << kBits) | (voxel.z & mask);
-      return static_cast<std::size_t>(index);
-    }
-
-    std::array<std::uint32_t, std::size_t{kSide} * kSide * kSide> places;  // in the blocks
-  };
   class Neighbourhood;
 
-  // Voxels live in blocks, so that growing never moves them: no scan pays for copying the map.
-  static constexpr std::uint32_t kBlockBits = 10;
-  Voxel& voxel(std::uint32_t place) {
-    return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)];
-  }
+  // Voxels live in pools, so that growing never moves them: no scan pays for copying the map.
+  static constexpr std::uint32_t kPoolBits = 10;
+  Voxel& voxel(std::uint32_t place) { return pools_[place >> kPoolBits][place & ((1U << kPoolBits) - 1U)]; }
   const Voxel& voxel(std::uint32_t place) const {
-    return blocks_[place >> kBlockBits][place & ((1U << kBlockBits) - 1U)];
+    return pools_[place >> kPoolBits][place & ((1U << kPoolBits) - 1U)];
   }
   std::uint32_t take_voxel();
   Eigen::Vector3f middle(const VoxelKey& key) const;
-  bool forget_beyond(const VoxelKey& tile_key, Tile& tile, const VoxelKey& center, double radius_voxels);
+  bool forget_beyond(const VoxelKey& block_key, VoxelBlock& block, const VoxelKey& center,
+                     double radius_voxels);
 
   LocalMapConfig config_;
   float inverse_voxel_;
   float step_m_;  // of the coordinates in a voxel
-  tsl::robin_map<VoxelKey, Tile, VoxelKeyHash> tiles_;
-  std::vector<std::vector<Voxel>> blocks_;
+  VoxelBlocks blocks_;
+  std::vector<std::vector<Voxel>> pools_;
   std::size_t num_voxels_ = 0;
   std::uint32_t num_taken_ = 0;  // places that were ever taken; some of them are free again
   std::vector<std::uint32_t> free_;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxRows = 128;
 // Elevations are compared by their tangents: cheaper, and nearly the same over a lidar's field of view.
-double tangent(const Eigen::Vector3d& p) {
+float tangent(const Eigen::Vector3f& p) {
   return p.z() / p.head<2>().norm();
 }
 
@@ -30,42 +30,44 @@ int count_rings(std::span<const Point> points) {
 }  // namespace
 
 RangeImage::RangeImage(std::span<const Point> points) {
-  double highest = -std::numeric_limits<double>::max();
-  lowest_tangent_ = std::numeric_limits<double>::max();
-  for (const Point& point : points) {
-    const double t = tangent(point.p_lidar.cast<double>());
-    lowest_tangent_ = std::min(lowest_tangent_, t);
-    highest = std::max(highest, t);
-  }
-  rows_ = points.empty() ? 0 : std::max(1, count_rings(points));
-  inverse_row_height_ = highest > lowest_tangent_ ? rows_ / ((highest - lowest_tangent_) * 1.0001) : 0.0;
+  if (!points.empty()) set_rows(points);
   pixels_.resize(static_cast<std::size_t>(rows_) * kColumns);
-  std::vector<double> fraction_sums(kColumns, 0.0);
+  std::vector<float> fraction_sums(kColumns, 0.0F);
   std::vector<int> counts(kColumns, 0);
   for (const Point& point : points) {
-    const Eigen::Vector3d p = point.p_lidar.cast<double>();
-    const int c = column(p.x(), p.y());
-    Pixel& pixel = pixels_[index(row(p), c, kColumns)];
-    const auto range_m = static_cast<float>(p.norm());
+    const int c = column(point.p_lidar);
+    Pixel& pixel = pixels_[index(row(point.p_lidar), c, kColumns)];
+    const float range_m = point.p_lidar.norm();
     pixel.nearest_m = pixel.nearest_m > 0.0F ? std::min(pixel.nearest_m, range_m) : range_m;
     pixel.farthest_m = std::max(pixel.farthest_m, range_m);
-    fraction_sums[static_cast<std::size_t>(c)] += static_cast<double>(point.sweep_fraction);
+    fraction_sums[static_cast<std::size_t>(c)] += point.sweep_fraction;
     ++counts[static_cast<std::size_t>(c)];
   }
   sweep_fractions_.assign(kColumns, 0.5F);
   for (std::size_t c = 0; c < counts.size(); ++c) {
-    if (counts[c] > 0) sweep_fractions_[c] = static_cast<float>(fraction_sums[c] / counts[c]);
+    if (counts[c] > 0) sweep_fractions_[c] = fraction_sums[c] / static_cast<float>(counts[c]);
   }
 }
 
-int RangeImage::column(double x, double y) const {
-  const double share =
-      0.5 +
-      0.5 * static_cast<double>(std::atan2(static_cast<float>(y), static_cast<float>(x))) / std::numbers::pi;
+void RangeImage::set_rows(std::span<const Point> points) {
+  float highest = -std::numeric_limits<float>::max();
+  lowest_tangent_ = std::numeric_limits<float>::max();
+  for (const Point& point : points) {
+    const float t = tangent(point.p_lidar);
+    lowest_tangent_ = std::min(lowest_tangent_, t);
+    highest = std::max(highest, t);
+  }
+  rows_ = std::max(1, count_rings(points));
+  const float height = (highest - lowest_tangent_) * 1.0001F;
+  inverse_row_height_ = height > 0.0F ? static_cast<float>(rows_) / height : 0.0F;
+}
+
+int RangeImage::column(const Eigen::Vector3f& p_lidar) {
+  const float share = 0.5F + 0.5F * std::numbers::inv_pi_v<float> * std::atan2(p_lidar.y(), p_lidar.x());
   return std::min(kColumns - 1, static_cast<int>(share * kColumns));
 }
 
-int RangeImage::row(const Eigen::Vector3d& p_lidar) const {
+int RangeImage::row(const Eigen::Vector3f& p_lidar) const {
   return static_cast<int>(std::floor((tangent(p_lidar) - lowest_tangent_) * inverse_row_height_));
 }
 
@@ -74,22 +76,21 @@ const RangeImage::Pixel& RangeImage::at(int row, int column) const {
   return pixels_[index(row, wrapped, kColumns)];
 }
 
-double RangeImage::sweep_fraction(const Eigen::Vector3d& p_lidar) const {
-  return static_cast<double>(sweep_fractions_[static_cast<std::size_t>(column(p_lidar.x(), p_lidar.y()))]);
+float RangeImage::sweep_fraction(const Eigen::Vector3f& p_lidar) const {
+  return sweep_fractions_[static_cast<std::size_t>(column(p_lidar))];
 }
 
-Sight RangeImage::look(const Eigen::Vector3d& p_lidar, double margin_m) const {
+Sight RangeImage::look(const Eigen::Vector3f& p_lidar, float margin_m) const {
   const int r = row(p_lidar);
   if (r < 0 || r >= rows_) return Sight::unknown;
-  const int c = column(p_lidar.x(), p_lidar.y());
+  const int c = column(p_lidar);
   const Pixel& middle = at(r, c);
   if (!(middle.nearest_m > 0.0F)) return Sight::unknown;
-  const auto range_m = static_cast<float>(p_lidar.norm());
-  const auto margin = static_cast<float>(margin_m);
-  if (range_m > middle.nearest_m - margin && range_m < middle.farthest_m + margin) return Sight::hit;
+  const float range_m = p_lidar.norm();
+  if (range_m > middle.nearest_m - margin_m && range_m < middle.farthest_m + margin_m) return Sight::hit;
   for (int j = c - 1; j <= c + 1; ++j) {
     const Pixel& pixel = at(r, j);
-    if (pixel.nearest_m > 0.0F && pixel.nearest_m < range_m + margin) return Sight::unknown;
+    if (pixel.nearest_m > 0.0F && pixel.nearest_m < range_m + margin_m) return Sight::unknown;
   }
   return Sight::through;
 }

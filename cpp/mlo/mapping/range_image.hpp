@@ -25,18 +25,18 @@ class RangeImage {
 
   /// When in the sweep the lidar looked in a direction: the mean of its column; 0.5 where nothing was
   /// measured.
-  double sweep_fraction(const Eigen::Vector3d& p_lidar) const;
+  float sweep_fraction(const Eigen::Vector3f& p_lidar) const;
 
   /// How far apart neighbouring scan lines lie on a horizontal surface through a place below the lidar.
-  double step_on_ground_m(const Eigen::Vector3d& p_lidar) const {
-    return p_lidar.squaredNorm() / (inverse_row_height_ * std::max(0.5, -p_lidar.z()));
+  float step_on_ground_m(const Eigen::Vector3f& p_lidar) const {
+    return p_lidar.squaredNorm() / (inverse_row_height_ * std::max(0.5F, -p_lidar.z()));
   }
 
   /// Whether the rays ended at a place or went through it. Through needs all rays of the pixel and of those
   /// beside it, so that the rim of a nearer surface does not look free.
   /// @param p_lidar   lidar frame at the time the lidar looked there [m]
   /// @param margin_m  how far ranges may differ and still mean the same place
-  Sight look(const Eigen::Vector3d& p_lidar, double margin_m) const;
+  Sight look(const Eigen::Vector3f& p_lidar, float margin_m) const;
 
  private:
   static constexpr int kColumns = 720;
@@ -45,12 +45,13 @@ class RangeImage {
     float nearest_m = 0.0F;  // 0: no ray
     float farthest_m = 0.0F;
   };
-  int column(double x, double y) const;
-  int row(const Eigen::Vector3d& p_lidar) const;
+  void set_rows(std::span<const Point> points);
+  static int column(const Eigen::Vector3f& p_lidar);
+  int row(const Eigen::Vector3f& p_lidar) const;
   const Pixel& at(int row, int column) const;
 
-  double lowest_tangent_ = 0.0;  // of the elevation
-  double inverse_row_height_ = 0.0;
+  float lowest_tangent_ = 0.0F;  // of the elevation
+  float inverse_row_height_ = 0.0F;
   int rows_ = 0;
   std::vector<Pixel> pixels_;           // row by row
   std::vector<float> sweep_fractions_;  // of each column

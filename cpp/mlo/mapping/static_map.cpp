@@ -47,6 +47,8 @@ void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const 
 void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
                        const SE3& T_map_lidar, std::span<const Box3d> moving) {
   Tile* tile = nullptr;
+  VoxelBlock* block = nullptr;
+  VoxelKey last_block;
   for (const FeaturePoint& feature : features) {
     const Eigen::Vector3d p_lidar =
         motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
@@ -54,10 +56,17 @@ void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, c
     if (std::any_of(moving.begin(), moving.end(), is_near)) continue;
     const Eigen::Vector3f p_map = (T_map_lidar * p_lidar).cast<float>();
     // Neighbours in a scan are neighbours in the map.
-    if (tile == nullptr || tile->key != tile_key(p_map)) tile = &tile_at(p_map);
-    const auto next = static_cast<std::uint32_t>(tile->entries.size());
-    const auto [place, is_new] = tile->index.try_emplace(voxel_key(p_map, inverse_voxel_), next);
-    if (is_new) tile->entries.push_back({{p_map, feature.intensity, label}});
+    const VoxelKey voxel = voxel_key(p_map, inverse_voxel_);
+    const bool same_tile = tile != nullptr && tile->key == tile_key(p_map);
+    if (!same_tile) tile = &tile_at(p_map);
+    if (!same_tile || VoxelBlock::key_of(voxel) != last_block) {
+      last_block = VoxelBlock::key_of(voxel);
+      block = &tile->index[last_block];
+    }
+    std::uint32_t& place = block->at(voxel);
+    if (place != VoxelBlock::kNone) continue;
+    place = static_cast<std::uint32_t>(tile->entries.size());
+    tile->entries.push_back({{p_map, feature.intensity, label}});
   }
 }
 
@@ -74,7 +83,8 @@ void StaticMap::fetch(Tile& tile) const {
   tile.entries = entries_of(tile);
   tile.num_spooled = 0;
   for (std::uint32_t i = 0; i < tile.entries.size(); ++i) {
-    tile.index.emplace(voxel_key(tile.entries[i].point.p_map, inverse_voxel_), i);
+    const VoxelKey voxel = voxel_key(tile.entries[i].point.p_map, inverse_voxel_);
+    tile.index[VoxelBlock::key_of(voxel)].at(voxel) = i;
   }
 }
 
@@ -110,15 +120,19 @@ void StaticMap::observe(const RangeImage& view, const SweepMotion& motion, const
 
 void StaticMap::observe(Tile& tile, const RangeImage& view, const SweepMotion& motion,
                         const SE3& T_lidar_map) const {
-  const double range2 = config_.free_space_range_m * config_.free_space_range_m;
+  const auto max_range_m = static_cast<float>(config_.free_space_range_m);
+  const auto margin_per_range = static_cast<float>(config_.free_space_margin_per_range);
+  const auto limit = static_cast<float>(config_.free_space_max_votes);
   for (Entry& entry : tile.entries) {
-    const Eigen::Vector3d p_lidar = T_lidar_map * entry.point.p_map.cast<double>();
-    if (p_lidar.squaredNorm() > range2) continue;
-    const Eigen::Vector3d p_measured = motion.distort(p_lidar, view.sweep_fraction(p_lidar));
-    double margin_m = config_.free_space_margin_m + config_.free_space_margin_per_range * p_lidar.norm();
+    const Eigen::Vector3d p = T_lidar_map * entry.point.p_map.cast<double>();
+    const Eigen::Vector3f p_lidar = p.cast<float>();
+    const float range_m = p_lidar.norm();
+    if (range_m > max_range_m) continue;
+    const auto sweep_fraction = static_cast<double>(view.sweep_fraction(p_lidar));
+    const Eigen::Vector3f p_measured = motion.distort(p, sweep_fraction).cast<float>();
+    float margin_m = static_cast<float>(config_.free_space_margin_m) + margin_per_range * range_m;
     if (entry.point.label == MapLabel::ground) margin_m += view.step_on_ground_m(p_lidar);
     const Sight sight = view.look(p_measured, margin_m);
-    const auto limit = static_cast<float>(config_.free_space_max_votes);
     if (sight == Sight::hit) {
       entry.votes = std::min(entry.votes + static_cast<float>(config_.free_space_hit_votes), limit);
     } else if (sight == Sight::through) {

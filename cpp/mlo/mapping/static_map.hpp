@@ -13,6 +13,7 @@
 #include "mlo/mapping/config.hpp"
 #include "mlo/mapping/range_image.hpp"
 #include "mlo/mapping/spool.hpp"
+#include "mlo/mapping/voxel_block.hpp"
 
 namespace mlo {
 
@@ -51,8 +52,8 @@ class StaticMap {
   };
   /// A column of the map: what is near the robot is found by its tiles.
   struct Tile {
-    tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> index;  // into entries
-    std::vector<Entry> entries;                                   // empty while on disk
+    VoxelBlocks index;           // into entries
+    std::vector<Entry> entries;  // empty while on disk
     VoxelKey key;
     std::uint64_t place = 0;      // on disk
     std::size_t num_spooled = 0;  // entries there; 0: the tile is in memory

@@ -15,16 +15,16 @@ constexpr std::size_t kGrain = 64;
 
 // The candidate nearest to p on the scan lines within the gap of that of m, but not on it.
 template <class Accept>
-std::optional<std::size_t> nearest_on_other_rings(const Eigen::Vector3d& p, std::size_t ring,
+std::optional<std::size_t> nearest_on_other_rings(const RingQuery& query, std::size_t ring,
                                                   const CandidateSet& candidates,
                                                   const OdometryConfig& config, const Accept& accept) {
   std::optional<std::size_t> best;
   double reach = config.patch_radius_m;
   const auto try_ring = [&](std::size_t other) {
-    const std::optional<std::size_t> found = candidates.nearest_on_ring(p, other, reach, accept);
+    const std::optional<std::size_t> found = candidates.nearest_on_ring(query, other, reach, accept);
     if (!found) return;
     best = found;
-    reach = (candidates.point(*found) - p).norm();
+    reach = static_cast<double>((candidates.point(*found).cast<float>() - query.p).norm());
   };
   for (std::size_t gap = 1; gap <= static_cast<std::size_t>(config.max_ring_gap); ++gap) {
     if (ring >= gap) try_ring(ring - gap);
@@ -79,7 +79,7 @@ std::optional<Line> find_line(const Eigen::Vector3d& p, const CandidateSet& cand
   const Eigen::Vector3f m_float = m.cast<float>();
   const auto min_squared = static_cast<float>(config.min_baseline_m * config.min_baseline_m);
   const std::optional<std::size_t> other = nearest_on_other_rings(
-      p, candidates.ring(*nearest), candidates, config,
+      RingQuery(p), candidates.ring(*nearest), candidates, config,
       [&](const Eigen::Vector3f& n) { return (n - m_float).squaredNorm() >= min_squared; });
   if (!other) return std::nullopt;
   return line_through(m, candidates.point(*other), 0.0);
@@ -94,15 +94,16 @@ std::optional<Plane> find_plane(const Eigen::Vector3d& p, const CandidateSet& ca
   if (ring == Point::kNoRing) return plane_without_rings(p, m, candidates, config);
   const Eigen::Vector3f m_float = m.cast<float>();
   const auto min_squared = static_cast<float>(config.min_baseline_m * config.min_baseline_m);
+  const RingQuery query(p);
   const std::optional<std::size_t> same = candidates.nearest_on_ring(
-      p, ring, config.patch_radius_m,
+      query, ring, config.patch_radius_m,
       [&](const Eigen::Vector3f& n) { return (n - m_float).squaredNorm() >= min_squared; });
   if (!same) return std::nullopt;
   const Eigen::Vector3f n = candidates.point(*same).cast<float>();
   const auto min_height = static_cast<float>(kMinTriangleHeight * config.min_baseline_m);
   const Eigen::Vector3f along = (n - m_float).normalized();
   const std::optional<std::size_t> other = nearest_on_other_rings(
-      p, ring, candidates, config,
+      query, ring, candidates, config,
       [&](const Eigen::Vector3f& o) { return (o - m_float).cross(along).norm() >= min_height; });
   if (!other) return std::nullopt;
   return plane_through(m, candidates.point(*same), candidates.point(*other), 0.0);

@@ -14,6 +14,15 @@
 
 namespace mlo {
 
+/// A place from which scan lines are searched, with what every search of it needs.
+struct RingQuery {
+  explicit RingQuery(const Eigen::Vector3d& p_lidar)
+      : p(p_lidar.cast<float>()), azimuth_rad(std::atan2(p.y(), p.x())), range_m(p.head<2>().norm()) {}
+  Eigen::Vector3f p;
+  float azimuth_rad;
+  float range_m;
+};
+
 /// Candidates of one kind, without motion distortion, searchable by distance and along scan lines. Immutable.
 /// Points are sorted by ring and azimuth; indices are into that order. Points that are not finite are left
 /// out.
@@ -39,8 +48,8 @@ class CandidateSet {
   std::vector<std::size_t> nearest(const Eigen::Vector3d& p, std::size_t count, double max_distance_m) const;
   /// The nearest candidate of a ring, nearer than max_distance_m, for which accept(point) is true.
   template <class Accept>
-  std::optional<std::size_t> nearest_on_ring(const Eigen::Vector3d& p, std::size_t ring,
-                                             double max_distance_m, const Accept& accept) const;
+  std::optional<std::size_t> nearest_on_ring(const RingQuery& query, std::size_t ring, double max_distance_m,
+                                             const Accept& accept) const;
 
  private:
   struct Tree;
@@ -66,18 +75,16 @@ ReferenceScan make_reference_scan(const Percept& percept, const SweepMotion& mot
                                   std::size_t max_candidates);
 
 template <class Accept>
-std::optional<std::size_t> CandidateSet::nearest_on_ring(const Eigen::Vector3d& p, std::size_t ring,
+std::optional<std::size_t> CandidateSet::nearest_on_ring(const RingQuery& query, std::size_t ring,
                                                          double max_distance_m, const Accept& accept) const {
   if (ring + 1 >= ring_begin_.size()) return std::nullopt;
   const std::size_t begin = ring_begin_[ring];
   const std::size_t count = ring_begin_[ring + 1] - begin;
   if (count == 0) return std::nullopt;
   const auto first = azimuths_.begin() + static_cast<std::ptrdiff_t>(begin);
-  const auto azimuth = static_cast<float>(std::atan2(p.y(), p.x()));
   const auto start = static_cast<std::size_t>(
-      std::lower_bound(first, first + static_cast<std::ptrdiff_t>(count), azimuth) - first);
-  const auto range = static_cast<float>(std::hypot(p.x(), p.y()));
-  const Eigen::Vector3f query = p.cast<float>();
+      std::lower_bound(first, first + static_cast<std::ptrdiff_t>(count), query.azimuth_rad) - first);
+  constexpr float kHalfTurn = std::numbers::pi_v<float>;
 
   std::optional<std::size_t> best;
   auto best_squared = static_cast<float>(max_distance_m * max_distance_m);
@@ -85,10 +92,11 @@ std::optional<std::size_t> CandidateSet::nearest_on_ring(const Eigen::Vector3d& 
   // point at an azimuth difference d below a quarter turn is at least range * sin(d) away.
   const auto walk = [&](std::size_t offset, std::size_t step) {
     for (std::size_t i = 0; i < count; ++i, offset = (offset + step) % count) {
-      const float d = std::remainder(azimuths_[begin + offset] - azimuth, 2.0F * std::numbers::pi_v<float>);
-      const float sine = std::abs(d) < 0.5F * std::numbers::pi_v<float> ? d - d * d * d / 6.0F : 0.83F;
-      if (range * range * sine * sine > best_squared) return;
-      const float squared = (points_[begin + offset] - query).squaredNorm();
+      float d = std::abs(azimuths_[begin + offset] - query.azimuth_rad);
+      if (d > kHalfTurn) d = 2.0F * kHalfTurn - d;
+      const float sine = d < 0.5F * kHalfTurn ? d - d * d * d / 6.0F : 0.83F;
+      if (query.range_m * query.range_m * sine * sine > best_squared) return;
+      const float squared = (points_[begin + offset] - query.p).squaredNorm();
       if (squared < best_squared && accept(points_[begin + offset])) {
         best_squared = squared;
         best = begin + offset;

@@ -105,7 +105,10 @@ bool leaves_direction_open(const EgoFeatures& features, const ReferenceScan& pre
   OdometryConfig one_step = config;
   one_step.max_matchings = 1;
   one_step.steps_per_matching = 1;
-  return estimate_increment(features, previous, T_start, timing, one_step).degenerate_directions > 0;
+  const auto limit = static_cast<std::size_t>(config.consistency.max_counted);
+  const EgoFeatures few{thinned(features.ground, limit), thinned(features.edge, limit),
+                        thinned(features.surface, limit)};
+  return estimate_increment(few, previous, T_start, timing, one_step).degenerate_directions > 0;
 }
 
 // Where nothing predicts the motion: a search, then an estimate with a kernel as wide as the step of the

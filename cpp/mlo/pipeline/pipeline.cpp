@@ -215,9 +215,14 @@ void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& moti
   }
 }
 
-bool Pipeline::looks_for_free_space(std::size_t frame) const {
-  const int every = config_.mapping.static_map.free_space_every;
-  return every > 0 && frame % static_cast<std::size_t>(every) == 0;
+void Pipeline::update_static_map(const Scan& scan, const Percept& seen, const SweepMotion& motion,
+                                 const SE3& T_map_lidar, std::span<const TrackedObject> objects) {
+  static_map_.insert(seen, motion, T_map_lidar, boxes_of_moving(objects));
+  const auto vote_every = static_cast<std::size_t>(config_.mapping.static_map.free_space_every);
+  if (vote_every > 0 && scan.frame % vote_every == 0) {
+    static_map_.observe(RangeImage(scan.points), motion, T_map_lidar);
+  }
+  static_map_.spool_far(T_map_lidar.translation().cast<float>());
 }
 
 void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
@@ -243,7 +248,6 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
     clear_local_maps();
     next.scans_lost = 0;
   }
-  const std::vector<Box3d> moving = boxes_of_moving(result.objects);
   tbb::parallel_invoke(
       [&] {
         if (!config_.odometry.enabled) return;
@@ -254,11 +258,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
         if (result.localised() || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
       },
       [&] {
-        if (!result.localised()) return;
-        static_map_.insert(seen, motion, T_map_lidar, moving);
-        if (looks_for_free_space(scan.frame))
-          static_map_.observe(RangeImage(scan.points), motion, T_map_lidar);
-        static_map_.spool_far(T_map_lidar.translation().cast<float>());
+        if (result.localised()) update_static_map(scan, seen, motion, T_map_lidar, result.objects);
       });
 
   const SE3 T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);

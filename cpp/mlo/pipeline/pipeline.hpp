@@ -64,7 +64,8 @@ class Pipeline {
   bool local_maps_are_empty() const;
   void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
 
-  bool looks_for_free_space(std::size_t frame) const;
+  void update_static_map(const Scan& scan, const Percept& seen, const SweepMotion& motion,
+                         const SE3& T_map_lidar, std::span<const TrackedObject> objects);
   void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
               const SweepTiming& timing, FrameResult& result);
 
