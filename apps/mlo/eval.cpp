@@ -9,6 +9,7 @@ constexpr const char* kExamples = R"(Examples:
   mlo eval trajectory --truth truth_lidar/01.txt --estimate out/trajectory.txt
   mlo eval map --cloud out/static_map.ply
   mlo eval objects --truth city/truth/objects.csv --estimate out/objects.csv
+  mlo eval detection --truth city/truth/objects.csv --truth-poses city/truth/poses_stamp.txt --estimate boxes.csv
   mlo eval tracking --truth training/label_02 --estimate out/tracks
 )";
 
@@ -19,6 +20,7 @@ void add_eval(CLI::App& program) {
   eval->require_subcommand(1);
   eval->footer(kExamples);
   add_eval_trajectory(*eval);
+  add_eval_detection(*eval);
   add_eval_tracking(*eval);
   add_eval_objects(*eval);
   add_eval_map(*eval);

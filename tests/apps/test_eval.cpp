@@ -208,5 +208,59 @@ TEST(EvalObjects, KittiLabelsNeedPosesAndCalibration) {
   EXPECT_NEAR(json["objects"][0]["path_m"].get<double>(), 3.0, 1e-6);
 }
 
+TEST(EvalDetection, ScoresObjectsSeenAllRound) {
+  const TempFolder folder;
+  const std::string truth =
+      folder
+          .write("objects.csv",
+                 "frame,id,class,x_m,y_m,z_m,qx,qy,qz,qw,length_m,width_m,height_m,points\n"
+                 "0,1,car,13,0,0,0,0,0,1,4,1.8,1.5,100\n"
+                 "0,2,car,-20,0,0,0,0,0,1,4,1.8,1.5,100\n"
+                 "1,1,car,13,0,0,0,0,0,1,4,1.8,1.5,3\n")
+          .string();
+  const std::string poses = folder.write("poses.txt", straight_rows(2, 3.0)).string();
+  const std::string boxes = folder
+                                .write("boxes.csv",
+                                       "frame,class,x_m,y_m,z_m,length_m,width_m,height_m,yaw_rad,score\n"
+                                       "0,car,13,0,0.5,4,1.8,1.5,0,0.9\n"
+                                       "1,car,10,0,0,4,1.8,1.5,0,0.9\n")
+                                .string();
+  const std::vector<std::string> arguments{"eval", "detection", "--truth", truth, "--estimate", boxes};
+  const ProgramRun refused = run_program(arguments);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--truth-poses"));
+  std::vector<std::string> complete = arguments;
+  complete.insert(complete.end(), {"--truth-poses", poses, "--iou", "0.6"});
+  const ProgramRun table = run_program(complete);
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, AllOf(HasSubstr("2 frames"), HasSubstr("moderate"), HasSubstr("10-20m")));
+  complete.push_back("--json");
+  const auto json = nlohmann::json::parse(run_program(complete).out);
+  ASSERT_EQ(json.size(), 2U);
+  EXPECT_EQ(json[0]["box"].get<std::string>(), "BEV");
+  EXPECT_EQ(json[0]["moderate"]["truth"].get<int>(), 2);  // three returns are too few to be demanded
+  EXPECT_DOUBLE_EQ(json[0]["moderate"]["recall"].get<double>(), 0.5);
+  EXPECT_DOUBLE_EQ(json[1]["moderate"]["recall"].get<double>(), 0.0);  // a third of the height is off
+  EXPECT_EQ(json[0]["recall_by_range"][1]["found"].get<int>(), 1);
+}
+
+TEST(EvalDetection, NeedsTheCalibrationOfLabels) {
+  const TempFolder folder;
+  const std::string truth =
+      folder.write("0000.txt", "0 5 Car 0 0 0 1 1 50 50 1.5 1.6 4.0 2.0 1.7 20.0 0.0\n").string();
+  const ProgramRun refused = run_program({"eval", "detection", "--truth", truth, "--estimate", truth});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--calib"));
+  const std::string calib = folder
+                                .write("calib.txt",
+                                       "P2: 700 0 621 0 0 700 187 0 0 0 1 0\n"
+                                       "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n")
+                                .string();
+  const ProgramRun run =
+      run_program({"eval", "detection", "--truth", truth, "--estimate", truth, "--calib", calib, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_DOUBLE_EQ(nlohmann::json::parse(run.out)[0]["easy"]["recall"].get<double>(), 1.0);
+}
+
 }  // namespace
 }  // namespace mlo

@@ -53,4 +53,9 @@ bool Box3d::contains(const Eigen::Vector3d& p_lidar, double margin_m) const {
   return ((p_object.cwiseAbs() - 0.5 * size_lwh_m).array() <= margin_m).all();
 }
 
+Box3d upright_box(const SE3& T_lidar_object, const Eigen::Vector3d& size_lwh_m) {
+  const Eigen::Vector3d heading = T_lidar_object.rotation() * Eigen::Vector3d::UnitX();
+  return {T_lidar_object.translation(), size_lwh_m, std::atan2(heading.y(), heading.x())};
+}
+
 }  // namespace mlo

@@ -28,6 +28,10 @@ struct Box3d {
   bool contains(const Eigen::Vector3d& p_lidar, double margin_m = 0.0) const;
 };
 
+/// The upright box that an annotator would draw around an object: its centre and heading, without its tilt.
+/// @param T_lidar_object  L_lt, body-fixed frame at the centre
+Box3d upright_box(const SE3& T_lidar_object, const Eigen::Vector3d& size_lwh_m);
+
 /// Upright rectangle in an image; x to the right, y down.
 struct Box2d {
   double left_px = 0.0;

@@ -20,6 +20,7 @@ struct ObjectPose {
   SE3 T_map_object;   ///< body-fixed frame: centre of the box, x ahead, z up
   Eigen::Vector3d size_lwh_m = Eigen::Vector3d::Zero();  ///< zero where it is not known
   std::optional<std::size_t> points;                     ///< returns from it in this scan, where known
+  std::optional<double> visible_share = {};  ///< of its sides that face the lidar, in [0, 1], where known
 };
 
 }  // namespace mlo

@@ -8,20 +8,14 @@
 #include <fmt/format.h>
 
 #include "mlo/core/assignment.hpp"
+#include "mlo/core/box_overlap.hpp"
 #include "mlo/core/error.hpp"
-#include "mlo/evaluation/box_overlap.hpp"
 
 namespace mlo {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr const char* kDontCare = "dontcare";
-
-std::vector<std::string> neighbors_of(const std::string& object_class) {
-  if (object_class == "car") return {"van"};
-  if (object_class == "pedestrian") return {"person", "person_sitting"};
-  return {};
-}
 
 bool takes_part(const ObjectRecord& record, const std::string& object_class,
                 std::span<const std::string> neighbors) {
@@ -66,6 +60,12 @@ std::vector<bool> tracks_that_count(const RecordFrame& frame, const Eigen::Matri
 }
 
 }  // namespace
+
+std::vector<std::string> neighbors_of(const std::string& object_class) {
+  if (object_class == "car") return {"van"};
+  if (object_class == "pedestrian") return {"person", "person_sitting"};
+  return {};
+}
 
 double similarity_of(const ObjectRecord& a, const ObjectRecord& b, const TrackingProtocol& protocol) {
   switch (protocol.similarity) {

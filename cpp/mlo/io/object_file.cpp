@@ -84,6 +84,7 @@ ObjectPose parse_row(const Row& row) {
     object.size_lwh_m(static_cast<Eigen::Index>(i)) = row.number(kSize[i]).value_or(0.0);
   }
   if (row.text("points")) object.points = row.needed_count("points");
+  object.visible_share = row.number("visible_share");
   return object;
 }
 

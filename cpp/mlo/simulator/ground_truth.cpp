@@ -12,12 +12,6 @@
 namespace mlo::simulator {
 namespace {
 
-/// The upright box in the lidar frame that an annotator would draw around the object.
-Box3d upright_box(const SE3& T_lidar_object, const Eigen::Vector3d& size) {
-  const Eigen::Vector3d heading = T_lidar_object.rotation() * Eigen::Vector3d::UnitX();
-  return {T_lidar_object.translation(), size, std::atan2(heading.y(), heading.x())};
-}
-
 /// Share of some triangles facing the lidar that it sees at the stamp.
 double visible_share(const Scene& scene, const SceneObject& object, const RayWorld& world, const Sweep& sweep,
                      const Eigen::Vector3d& lidar_world) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mlo/evaluation/box_overlap.hpp"
+#include "mlo/core/box_overlap.hpp"
 
 namespace mlo {
 namespace {
@@ -47,6 +47,15 @@ TEST(BoxOverlap, BoxesOfKnownOverlap) {
               1.0 / 7.0, 1e-12);
 }
 
+TEST(BoxOverlap, FootprintsDoNotLookAtHeights) {
+  const Box3d a = box({0, 0, 0}, {4, 2, 1.5}, 0.3);
+  EXPECT_NEAR(footprint_iou(a, box({0, 0, 9}, {4, 2, 0.5}, 0.3)), 1.0, 1e-12);
+  EXPECT_NEAR(footprint_iou(box({0, 0, 0}, {4, 1, 1}, 0.0), box({0, 0, 0}, {4, 1, 1}, kPi / 2)), 1.0 / 7.0,
+              1e-12);
+  EXPECT_EQ(footprint_iou(a, box({50, 0, 0}, {4, 2, 1.5}, 0.3)), 0.0);
+  EXPECT_EQ(footprint_iou(a, box({0, 0, 0}, {0, 2, 1.5}, 0.3)), 0.0);
+}
+
 TEST(BoxOverlap, EqualsCountingPoints) {
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -56,14 +65,21 @@ TEST(BoxOverlap, EqualsCountingPoints) {
         box({1.5 * uniform(rng), uniform(rng), 0.5 * uniform(rng)}, {3.5, 2.0, 1.4}, kPi * uniform(rng));
     std::size_t both = 0;
     std::size_t any = 0;
+    std::size_t both_above = 0;
+    std::size_t any_above = 0;
     for (int i = 0; i < 40000; ++i) {
       const Eigen::Vector3d p(5.0 * uniform(rng), 5.0 * uniform(rng), 2.0 * uniform(rng));
       const bool in_a = a.contains(p);
       const bool in_b = b.contains(p);
       both += in_a && in_b ? 1 : 0;
       any += in_a || in_b ? 1 : 0;
+      const Eigen::Vector3d above_a(p.x(), p.y(), a.center_lidar_m.z());
+      const Eigen::Vector3d above_b(p.x(), p.y(), b.center_lidar_m.z());
+      both_above += a.contains(above_a) && b.contains(above_b) ? 1 : 0;
+      any_above += a.contains(above_a) || b.contains(above_b) ? 1 : 0;
     }
     EXPECT_NEAR(intersection_over_union(a, b), static_cast<double>(both) / static_cast<double>(any), 0.04);
+    EXPECT_NEAR(footprint_iou(a, b), static_cast<double>(both_above) / static_cast<double>(any_above), 0.04);
     EXPECT_NEAR(intersection_over_union(a, b), intersection_over_union(b, a), 1e-12);
   }
 }

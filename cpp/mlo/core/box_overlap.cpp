@@ -1,4 +1,4 @@
-#include "mlo/evaluation/box_overlap.hpp"
+#include "mlo/core/box_overlap.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -51,6 +51,9 @@ double area(const Polygon& polygon) {
 
 // Area that two boxes share seen from above: b's outline in a's axes, cut off at a's four sides.
 double footprint_intersection(const Box3d& a, const Box3d& b) {
+  const double reach_m = 0.5 * (a.size_lwh_m.head<2>().norm() + b.size_lwh_m.head<2>().norm());
+  const Eigen::Vector2d apart_m = (a.center_lidar_m - b.center_lidar_m).head<2>();
+  if (apart_m.squaredNorm() > reach_m * reach_m) return 0.0;  // cheap, and true of most pairs
   const Eigen::Vector2d half = 0.5 * a.size_lwh_m.head<2>();
   const Eigen::Rotation2Dd R_ab(b.yaw_rad - a.yaw_rad);
   const Eigen::Vector2d center =
@@ -74,6 +77,14 @@ double intersection_over_union(const Box2d& a, const Box2d& b) {
   if (area_a <= kEmpty || area_b <= kEmpty) return 0.0;
   const double shared = intersection(a, b);
   return shared / (area_a + area_b - shared);
+}
+
+double footprint_iou(const Box3d& a, const Box3d& b) {
+  if ((a.size_lwh_m.head<2>().array() <= 0.0).any() || (b.size_lwh_m.head<2>().array() <= 0.0).any()) {
+    return 0.0;
+  }
+  const double shared = footprint_intersection(a, b);
+  return shared / (a.size_lwh_m.head<2>().prod() + b.size_lwh_m.head<2>().prod() - shared);
 }
 
 double intersection_over_union(const Box3d& a, const Box3d& b) {
