@@ -37,12 +37,12 @@ demo: build
 demo-simulated:
 	@echo "Simulating a drive through a city (synthetic data):"
 	@$(BUILD)/bin/mlo simulate --scene city --length 150 --seed 7 --overwrite --out "$(OUT)/drive"
-	@echo "Estimating trajectory and static map, with the simulated detector's boxes cut out:"
-	@$(BUILD)/bin/mlo run "$(OUT)/drive" --detections "$(OUT)/drive/detections/noisy.csv" --out "$(OUT)/run"
+	@echo "Estimating trajectory, objects and static map:"
+	@$(BUILD)/bin/mlo run "$(OUT)/drive" --out "$(OUT)/run"
 	@$(BUILD)/bin/mlo eval trajectory --truth "$(OUT)/drive/truth/poses_stamp.txt" --estimate "$(OUT)/run/trajectory.txt" \
 	  --plot "$(OUT)/trajectory.svg"
 	@echo
-	@echo "Look at: $(OUT)/trajectory.svg (path and errors), $(OUT)/run/static_map.ply (map), $(OUT)/run/run.json (report)"
+	@echo "Look at: $(OUT)/trajectory.svg (path and errors), $(OUT)/run/static_map.ply (map), $(OUT)/run/objects.csv (objects), $(OUT)/run/run.json (report)"
 
 test:
 	$(call install,build)

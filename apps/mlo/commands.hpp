@@ -8,6 +8,7 @@ namespace mlo::apps {
 // and throws CLI::RuntimeError(exit code) or mlo::InputError to end with an error. Results go to stdout,
 // everything else through spdlog to stderr.
 void add_run(CLI::App& program);
+void add_detect(CLI::App& program);
 void add_track(CLI::App& program);
 void add_eval(CLI::App& program);
 void add_config(CLI::App& program);

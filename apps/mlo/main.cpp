@@ -89,6 +89,7 @@ int run(int argc, char** argv) {
   program.footer(kFooter);
   add_global_options(program);
   mlo::apps::add_run(program);
+  mlo::apps::add_detect(program);
   mlo::apps::add_track(program);
   mlo::apps::add_eval(program);
   mlo::apps::add_config(program);

@@ -27,6 +27,7 @@ struct Options {
   std::vector<std::filesystem::path> detections;
   std::string frames;
   std::string roi;
+  std::string detector;
   RunOptions run;
   int threads = 0;
   ConfigArguments config;
@@ -60,6 +61,7 @@ PipelineConfig configure(const Options& options, const SensorConfig& known_senso
   base.sensor = known_sensor;
   ConfigArguments arguments = options.config;
   if (!options.roi.empty()) arguments.settings.push_back("input.roi=" + options.roi);
+  if (!options.detector.empty()) arguments.settings.push_back("detection.detector=" + options.detector);
   return resolve(arguments, base);
 }
 
@@ -71,12 +73,20 @@ Dataset open(const Options& options) {
   return open_dataset(options.folder, open);
 }
 
+std::string objects_text(const RunSummary& summary) {
+  if (summary.boxes_from == "none") return "none looked for";
+  const std::string found = fmt::format("{} boxes", summary.detections);
+  if (summary.boxes_from == "given") return found + " as given";
+  return fmt::format("{} found by the detector '{}'", found, summary.boxes_from);
+}
+
 void print_summary(const RunSummary& summary, const std::filesystem::path& out) {
   for (const std::string& warning : summary.warnings) spdlog::warn("{}", warning);
   const TimeStatistics scan = scan_statistics(summary);
   std::cout << fmt::format("{} of {} scans, {:.1f} m, {:.1f} ms a scan (p99 {:.1f}), {:.0f} MiB\n",
                            summary.processed, summary.scans, summary.path_m, scan.mean_ms, scan.p99_ms,
                            peak_memory_mib());
+  std::cout << fmt::format("objects: {}\n", objects_text(summary));
   if (summary.skipped > 0) std::cout << fmt::format("skipped: {} scans\n", summary.skipped);
   if (summary.predicted > 0) {
     std::cout << fmt::format("lost: {} scans have a predicted pose only\n", summary.predicted);
@@ -139,6 +149,11 @@ void add_run(CLI::App& program) {
       ->add_option("--detections", options->detections,
                    "3D boxes: AB3DMOT CSV, KITTI labels or results, JSON or CSV of our own; file or folder")
       ->type_name("PATH");
+  command
+      ->add_option("--detector", options->detector,
+                   "Finds objects where no boxes are given, short for --set detection.detector=...")
+      ->check(CLI::IsMember({"none", "cluster"}))
+      ->excludes("--detections");
   command->add_option("--frames", options->frames, "Only these frames, ends included: 0:99, 50:, :99")
       ->type_name("A:B");
   command->add_option("--roi", options->roi, "Region of interest, short for --set input.roi=...")
@@ -151,13 +166,14 @@ void add_run(CLI::App& program) {
   command->footer(R"(
 Writes to DIR: trajectory.txt (KITTI rows, lidar poses in the first scan's frame), trajectory_camera.txt
 (the same for KITTI's camera 0), trajectory_tum.txt, odometry.txt (before map refinement), static_map.ply
-and .pcd, run.json, per_scan.csv and config.yaml; with --detections also objects.csv (pose, velocity, size of each
-tracked object in each scan) and object_trajectories/ID.txt (TUM rows).
+and .pcd, run.json, per_scan.csv and config.yaml; unless --detector is none also objects.csv (pose, velocity, size of
+each tracked object in each scan) and object_trajectories/ID.txt (TUM rows).
 
 Examples:
   mlo run kitti/sequences/04 --out out/04
   mlo run kitti --sequence 04 --roi camera --preset paper --out out/04_paper
   mlo run kitti_raw/2011_09_26/2011_09_26_drive_0005_sync --out out/0005
+  mlo run kitti_raw/2011_09_26/2011_09_26_drive_0005_sync --detections boxes.csv --out out/0005
   mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine)");
   command->callback([options] { run_command(*options); });
 }

@@ -1,11 +1,9 @@
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
-#include "io/synthetic_sweep.hpp"
+#include "apps/room.hpp"
 
 namespace mlo {
 namespace {
@@ -13,23 +11,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// KITTI odometry layout: a lidar that stands in a room for four scans.
-std::filesystem::path room_sequence() {
-  const std::filesystem::path sequence = fresh_folder() / "04";
-  std::filesystem::create_directories(sequence / "velodyne");
-  const std::string scan = test::to_bin(test::make_sweep({.sensor = hdl64e(), .columns = 300}));
-  for (int i = 0; i < 4; ++i) {
-    std::ofstream(sequence / "velodyne" / ("00000" + std::to_string(i) + ".bin"), std::ios::binary) << scan;
-  }
-  std::ofstream(sequence / "times.txt") << "0.0\n0.1\n0.2\n0.3\n";
-  std::ofstream(sequence / "calib.txt") << "P0: 700 0 600 0 0 700 180 0 0 0 1 0\n"
-                                        << "P1: 700 0 600 0 0 700 180 0 0 0 1 0\n"
-                                        << "P2: 700 0 600 0 0 700 180 0 0 0 1 0\n"
-                                        << "P3: 700 0 600 0 0 700 180 0 0 0 1 0\n"
-                                        << "Tr: 0 -1 0 0 0 0 -1 -0.1 1 0 0 -0.3\n";
-  return sequence;
-}
 
 TEST(Run, HelpEndsInExamples) {
   const ProgramRun run = run_program({"run", "--help"});
@@ -44,7 +25,7 @@ TEST(Run, FromScansToResults) {
   const ProgramRun run = run_program({"-q", "run", sequence.string(), "--out", out.string(), "--threads", "1",
                                       "--frames", "1:3", "--set", "odometry.enabled=false"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("3 of 3 scans"));
+  EXPECT_THAT(run.out, AllOf(HasSubstr("3 of 3 scans"), HasSubstr("found by the detector 'cluster'")));
   for (const char* name : {"trajectory.txt", "trajectory_camera.txt", "trajectory_tum.txt", "odometry.txt",
                            "static_map.ply", "static_map.pcd", "run.json", "per_scan.csv", "config.yaml"}) {
     EXPECT_GT(std::filesystem::file_size(out / name), 0U) << name;
@@ -52,6 +33,19 @@ TEST(Run, FromScansToResults) {
   const nlohmann::json report = nlohmann::json::parse(read_text(out / "run.json"));
   EXPECT_EQ(report.at("predicted"), 0);
   EXPECT_LT(report.at("path_m"), 0.01);
+}
+
+TEST(Run, WithoutADetector) {
+  const std::filesystem::path sequence = room_sequence();
+  const std::filesystem::path out = sequence.parent_path() / "out";
+  const ProgramRun run =
+      run_program({"-q", "run", sequence.string(), "--out", out.string(), "--detector", "none"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("objects: none looked for"));
+  EXPECT_FALSE(std::filesystem::exists(out / "objects.csv"));
+  const ProgramRun both = run_program(
+      {"run", sequence.string(), "--out", out.string(), "--detector", "none", "--detections", "boxes.csv"});
+  EXPECT_EQ(both.exit_code, 2);
 }
 
 TEST(Run, AMissingFolderIsAnInputErrorWithARemedy) {

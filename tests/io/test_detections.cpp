@@ -136,6 +136,23 @@ TEST(Detections, OwnCsv) {
   EXPECT_TRUE(read_text("frame,class,x_m,y_m,z_m,length_m,width_m,height_m,yaw_rad\n").by_frame.empty());
 }
 
+TEST(Detections, OwnCsvAsWritten) {
+  const TempFolder folder;
+  const std::vector<Detection> written{
+      {ObjectClass::van, {{10.0, -4.5, -0.75}, {5.25, 2.0, 2.25}, -1.5}, 0.75},
+      {ObjectClass::cyclist, {{3.0, 2.0, -1.0}, {1.75, 0.5, 1.75}, 0.5}, 0.5}};
+  const auto file = folder.write("boxes.csv", detection_csv_header() + detection_csv_lines(7, written));
+  const std::vector<Detection> read = read_detections({file}, {}).detections_at(7, 0.0);
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].object_class, written[i].object_class);
+    EXPECT_EQ(read[i].box.center_lidar_m, written[i].box.center_lidar_m);
+    EXPECT_EQ(read[i].box.size_lwh_m, written[i].box.size_lwh_m);
+    EXPECT_EQ(read[i].box.yaw_rad, written[i].box.yaw_rad);
+    EXPECT_EQ(read[i].confidence, written[i].confidence);
+  }
+}
+
 TEST(Detections, OwnJson) {
   const std::string car =
       R"("class": "car", "center_m": [20, 3, -0.95], "size_lwh_m": [4, 1.6, 1.5], "yaw_rad": 0})";

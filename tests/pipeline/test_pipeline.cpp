@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mlo/pipeline/find_objects.hpp"
 #include "mlo/pipeline/pipeline.hpp"
 #include "pipeline/street.hpp"
 
@@ -175,6 +176,21 @@ TEST(Pipeline, MapsPerClassFollowTheMotionToo) {
     result = pipeline.process(test::street_scan(i, static_cast<double>(i), true), {});
   }
   expect_near(result.T_map_lidar, expected_pose(7.0), 0.05, 0.2);
+}
+
+TEST(Pipeline, LooksForObjectsOnlyWhereNoBoxesAreGiven) {
+  PipelineConfig config;
+  config.sensor = test::small_lidar();
+  config.detection.cluster.min_probability = 0.0;  // all that it judges
+  config.detection.cluster.min_candidate = 0.0;
+  const Scan scan = test::street_scan(0, 0.0, true);
+  const FrameResult found = Pipeline(config).process(scan);
+  EXPECT_GT(found.counts.objects, 0U);
+  EXPECT_EQ(found.counts.objects, find_objects(scan, std::nullopt, config).objects.size());
+  EXPECT_GE(find_object_candidates(scan, config).size(), found.counts.objects);
+  EXPECT_EQ(Pipeline(config).process(scan, {}).counts.objects, 0U);
+  config.detection.detector = Detector::none;
+  EXPECT_EQ(Pipeline(config).process(scan).counts.objects, 0U);
 }
 
 }  // namespace

@@ -265,5 +265,30 @@ TEST(Run, DetectionsAreCountedAndCutOut) {
   EXPECT_TRUE(std::filesystem::exists(out / "object_trajectories"));
 }
 
+TEST(Run, SaysWhatFoundTheBoxes) {
+  const test::TempFolder folder;
+  write_good_scans(folder, 3);
+  const auto run_with = [&](const std::string& detector) {
+    PipelineConfig config = small_config();
+    config.detection.detector = detector == "none" ? Detector::none : Detector::cluster;
+    config.detection.cluster.min_probability = 0.0;  // all that it judges
+    config.detection.cluster.min_candidate = 0.0;
+    return run(open(folder), std::nullopt, config, {.out = folder.path() / detector}, {}, {});
+  };
+  const RunSummary without = run_with("none");
+  EXPECT_EQ(without.boxes_from, "none");
+  EXPECT_EQ(without.detections, 0U);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "none" / "objects.csv"));
+  const RunSummary with = run_with("cluster");
+  EXPECT_EQ(with.boxes_from, "cluster");
+  EXPECT_GT(with.detections, 0U);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "cluster" / "objects.csv"));
+  const auto report = nlohmann::json::parse(test::read_bytes(folder.path() / "cluster" / "run.json"));
+  EXPECT_EQ(report.at("boxes_from"), "cluster");
+  const RunSummary given =
+      run(open(folder), DetectionList{}, small_config(), {.out = folder.path() / "given"}, {}, {});
+  EXPECT_EQ(given.boxes_from, "given");
+}
+
 }  // namespace
 }  // namespace mlo

@@ -13,7 +13,7 @@ inline std::filesystem::path write_run(const TempFolder& folder, const std::stri
   folder.write(name + "/run.json", R"({
   "version": "0.1.0",
   "input": {"folder": "scans/04", "format": "kitti_odometry", "sequence": "04"},
-  "scans": 3, "processed": 2, "skipped": 1, "path_m": 2.5, "interrupted": false,
+  "scans": 3, "processed": 2, "skipped": 1, "path_m": 2.5, "interrupted": false, "boxes_from": "cluster",
   "times": {"perception": {"mean_ms": 10.0, "p50_ms": 9.0, "p99_ms": 12.0, "max_ms": 13.0},
             "scan": {"mean_ms": 20.0, "p50_ms": 19.0, "p99_ms": 22.0, "max_ms": 23.0}},
   "warnings": ["something <odd> & strange"]

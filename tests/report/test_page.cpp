@@ -24,6 +24,7 @@ TEST(ReportPage, HoldsTheRunsSideBySide) {
       page,
       AllOf(HasSubstr("<th>first</th><th>second</th>"), HasSubstr("<td>skipped</td><td>1</td><td>1</td>"),
             HasSubstr("<td>path [m]</td><td>2.5</td><td>2.5</td>"), HasSubstr("perception"),
+            HasSubstr("<td>boxes from</td><td>cluster</td><td>cluster</td>"),
             HasSubstr("Path seen from above"), HasSubstr("data:image/png"), HasSubstr("@media print")));
   EXPECT_THAT(page, Not(HasSubstr("ATE")));  // there is no truth
   EXPECT_EQ(page, report_page(runs));

@@ -19,6 +19,7 @@ TEST(RunFolder, ReadsWhatARunWrote) {
   const RunFolder run = read_run_folder(path);
   EXPECT_EQ(run.name, "a");
   EXPECT_EQ(run.input_sequence, "04");
+  EXPECT_EQ(run.boxes_from, "cluster");
   EXPECT_THAT(run.counters, testing::Contains(testing::Pair("skipped", 1.0)));
   EXPECT_THAT(run.warnings, testing::ElementsAre("something <odd> & strange"));
   EXPECT_THAT(run.problems, testing::ElementsAre("frame 1: 000001.bin: 3 bytes, not whole"));

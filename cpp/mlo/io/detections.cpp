@@ -207,4 +207,20 @@ DetectionList read_detections(const std::vector<fs::path>& paths, const Calibrat
   return list;
 }
 
+std::string detection_csv_header() {
+  return "frame,class,x_m,y_m,z_m,length_m,width_m,height_m,yaw_rad,score\n";
+}
+
+std::string detection_csv_lines(std::size_t frame, std::span<const Detection> detections) {
+  std::string lines;
+  for (const Detection& detection : detections) {
+    const Eigen::Vector3d& p = detection.box.center_lidar_m;
+    const Eigen::Vector3d& size = detection.box.size_lwh_m;
+    lines += fmt::format("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},{:.12g}\n", frame,
+                         to_string(detection.object_class), p.x(), p.y(), p.z(), size.x(), size.y(), size.z(),
+                         detection.box.yaw_rad, detection.confidence);
+  }
+  return lines;
+}
+
 }  // namespace mlo

@@ -60,4 +60,9 @@ struct DetectionOptions {
 DetectionList read_detections(const std::vector<std::filesystem::path>& paths, const Calibration& calibration,
                               const DetectionOptions& options = {});
 
+/// Header and lines of the project's own CSV (docs/detections.md), with line ends. Scores have twelve digits:
+/// sure ones differ late.
+std::string detection_csv_header();
+std::string detection_csv_lines(std::size_t frame, std::span<const Detection> detections);
+
 }  // namespace mlo

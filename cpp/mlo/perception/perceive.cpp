@@ -47,13 +47,16 @@ std::vector<ObjectPoints> gather_objects(std::span<const Point> points, std::spa
 }  // namespace
 
 Percept perceive(const Scan& scan, std::span<const Detection> detections, const PerceptionConfig& config) {
+  return perceive(scan, segment_ground(scan.points, config.ground), detections, config);
+}
+
+Percept perceive(const Scan& scan, const GroundSegmentation& ground, std::span<const Detection> detections,
+                 const PerceptionConfig& config) {
   const std::span<const Point> points(scan.points);
-  GroundSegmentation ground;
   std::vector<std::uint16_t> object_ids;
   ScanLines lines;
   LineShape shape;
-  tbb::parallel_invoke([&] { ground = segment_ground(points, config.ground); },
-                       [&] { object_ids = label_objects(points, detections, config.fusion.box_margin_m); },
+  tbb::parallel_invoke([&] { object_ids = label_objects(points, detections, config.fusion.box_margin_m); },
                        [&] {
                          lines = group_lines(points);
                          shape = measure_lines(points, lines);

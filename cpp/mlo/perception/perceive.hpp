@@ -5,6 +5,7 @@
 #include "mlo/core/features.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/perception/config.hpp"
+#include "mlo/perception/ground.hpp"
 
 namespace mlo {
 
@@ -14,5 +15,9 @@ namespace mlo {
 /// @param detections  boxes in the lidar frame at the time of the scan; objects of the result keep their
 /// order
 Percept perceive(const Scan& scan, std::span<const Detection> detections, const PerceptionConfig& config);
+
+/// The same with the ground of the scan as segment_ground() found it.
+Percept perceive(const Scan& scan, const GroundSegmentation& ground, std::span<const Detection> detections,
+                 const PerceptionConfig& config);
 
 }  // namespace mlo

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mlo/core/sensor.hpp"
+#include "mlo/detection/config.hpp"
 #include "mlo/mapping/config.hpp"
 #include "mlo/odometry/config.hpp"
 #include "mlo/perception/config.hpp"
@@ -56,6 +57,7 @@ struct PipelineConfig {
   InputConfig input;
   MotionConfig motion;
   PerceptionConfig perception;
+  DetectionConfig detection;
   OdometryConfig odometry;
   MappingConfig mapping;
   TrackingConfig tracking;
@@ -66,6 +68,7 @@ struct PipelineConfig {
     visit.group("input", input, "Which part of the scans is used.");
     visit.group("motion", motion, "Motion during a sweep.");
     visit.group("perception", perception, "Ground, features and objects of one scan (paper, section III-B).");
+    visit.group("detection", detection, "What finds objects where no boxes are given.");
     visit.group("odometry", odometry, "Scan-to-scan ego odometry (paper, section III-C-1).");
     visit.group("mapping", mapping, "Map refinement and the static map (paper, section III-D).");
     visit.group("tracking", tracking, "Multi-object tracking (paper, section III-C-2).");

@@ -14,10 +14,10 @@
 namespace mlo {
 
 /// The steps of a scan, in order.
-enum class Stage { prepare, perception, odometry, refinement, tracking, map_update };
-inline constexpr std::size_t kNumStages = 6;
+enum class Stage { prepare, perception, detection, odometry, refinement, tracking, map_update };
+inline constexpr std::size_t kNumStages = 7;
 inline constexpr std::array<std::string_view, kNumStages> kStageNames{
-    "prepare", "perception", "odometry", "refinement", "tracking", "map_update"};
+    "prepare", "perception", "detection", "odometry", "refinement", "tracking", "map_update"};
 
 /// Wall time per stage [ms].
 struct StageTimes {
@@ -70,8 +70,7 @@ struct FrameResult {
   PoseEstimate odometry;    ///< increment T_previous_current
   PoseEstimate refinement;  ///< T_map_lidar at the reference time of the sweep
   ConsistencyReport consistency;
-  std::vector<TrackedObject>
-      objects;  ///< all tracks that live, in the odometry frame; none without detections
+  std::vector<TrackedObject> objects;  ///< all tracks that live, in the map frame; none without detections
   PerceptCounts counts;
   StageTimes times;
 

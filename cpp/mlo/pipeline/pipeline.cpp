@@ -87,6 +87,14 @@ Pipeline::Pipeline(const PipelineConfig& config)
       tracker_(config.tracking) {}
 
 FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detections) {
+  return process_scan(scan, detections);
+}
+
+FrameResult Pipeline::process(const Scan& scan) {
+  return process_scan(scan, std::nullopt);
+}
+
+FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<const Detection>> given) {
   FrameResult result;
   result.frame = scan.frame;
   result.stamp_s = scan.stamp_s;
@@ -94,8 +102,13 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
 
   const Scan prepared =
       timed(times, Stage::prepare, [&] { return prepare(scan, config_.sensor, config_.input); });
-  const Percept seen =
-      timed(times, Stage::perception, [&] { return perceive(prepared, detections, config_.perception); });
+  const GroundSegmentation ground = timed(
+      times, Stage::perception, [&] { return segment_ground(prepared.points, config_.perception.ground); });
+  FoundObjects found;
+  if (!given) found = timed(times, Stage::detection, [&] { return find_objects(prepared, ground); });
+  const Percept seen = timed(times, Stage::perception, [&] {
+    return perceive(prepared, ground, given.value_or(found.objects), config_.perception);
+  });
   result.counts = count(prepared, seen);
 
   const SweepTiming sweep = timing(prepared);
@@ -115,7 +128,14 @@ FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detec
       result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
   result.objects = timed(times, Stage::tracking, [&] { return track(prepared, seen, T_map_lidar, sweep); });
   timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, T_map_lidar, sweep, result); });
+  state_.likely_objects = std::move(found.likely);
   return result;
+}
+
+FoundObjects Pipeline::find_objects(const Scan& prepared, const GroundSegmentation& ground) const {
+  std::optional<FoundBefore> before;
+  if (!state_.empty) before = {state_.likely_objects, predict(timing(prepared)).inverse()};
+  return detect(prepared.points, ground.is_ground, before, config_.detection);
 }
 
 SweepTiming Pipeline::timing(const Scan& scan) const {

@@ -7,10 +7,12 @@
 #include "mlo/core/features.hpp"
 #include "mlo/core/sweep_motion.hpp"
 #include "mlo/core/types.hpp"
+#include "mlo/detection/detect.hpp"
 #include "mlo/mapping/local_map.hpp"
 #include "mlo/mapping/static_map.hpp"
 #include "mlo/odometry/reference_scan.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
+#include "mlo/perception/ground.hpp"
 #include "mlo/pipeline/config.hpp"
 #include "mlo/pipeline/frame_result.hpp"
 #include "mlo/tracking/tracker.hpp"
@@ -26,6 +28,8 @@ class Pipeline {
   /// allowed. After three scans in a row that are not found in the local maps, these begin anew at the
   /// predicted pose.
   FrameResult process(const Scan& scan, std::span<const Detection> detections);
+  /// The same where nobody gives boxes: the detector of the configuration looks for them.
+  FrameResult process(const Scan& scan);
 
   /// Poses by constant motion, this many sweeps after the last scan that was processed.
   PredictedPoses predict_poses(double sweeps_ahead) const;
@@ -38,11 +42,12 @@ class Pipeline {
     bool empty = true;
     bool motion_known = false;  ///< false until a first increment was estimated, and after a failure
     double stamp_s = 0.0;
-    SE3 T_odom_lidar;                 ///< at the reference time of the last scan
-    SE3 T_map_lidar;                  ///< the same, refined
-    SE3 T_sweep;                      ///< motion of the last sweep, from its start to its end
-    ReferenceScan reference;          ///< last scan's candidates without distortion
-    int scans_lost = 0;               ///< in a row, up to this one; scans too empty to be placed do not count
+    SE3 T_odom_lidar;         ///< at the reference time of the last scan
+    SE3 T_map_lidar;          ///< the same, refined
+    SE3 T_sweep;              ///< motion of the last sweep, from its start to its end
+    ReferenceScan reference;  ///< last scan's candidates without distortion
+    int scans_lost = 0;       ///< in a row, up to this one; scans too empty to be placed do not count
+    std::vector<Detection> likely_objects;  ///< the detector's, for the next scan to look back at
     std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
   };
 
@@ -51,6 +56,9 @@ class Pipeline {
     LocalMap ground, edge, surface;
   };
 
+  /// @param given  boxes, or nothing: they are looked for
+  FrameResult process_scan(const Scan& scan, std::optional<std::span<const Detection>> given);
+  FoundObjects find_objects(const Scan& prepared, const GroundSegmentation& ground) const;
   SweepTiming timing(const Scan& scan) const;
   SE3 predict(const SweepTiming& timing) const;
   EgoOdometryResult estimate_increment(const Percept& seen, const SE3& prediction, const SweepTiming& timing,

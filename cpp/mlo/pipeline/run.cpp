@@ -53,13 +53,31 @@ void warn_of_strange_boxes(const Dataset& dataset, const std::vector<std::size_t
   if (!problem.empty()) summary.warnings.push_back(problem);
 }
 
+FrameResult process(const Scan& scan, const std::optional<DetectionList>& detections, Pipeline& pipeline) {
+  if (!detections) return pipeline.process(scan);
+  return pipeline.process(scan, detections->detections_at(scan.frame, scan.stamp_s));
+}
+
 void tally(const FrameResult& result, RunSummary& summary) {
   ++summary.processed;
+  summary.detections += result.counts.objects;
   summary.times.push_back(result.times);
   if (!result.localised()) ++summary.predicted;
   if (result.refinement.degenerate_directions > 0) ++summary.degenerate;
   if (result.odometry.degenerate_directions > 0) ++summary.odometry_degenerate;
   if (result.consistency.run && !result.consistency.passed) ++summary.failed_checks;
+}
+
+// As run.json names it.
+std::string boxes_from(bool given, Detector detector) {
+  if (given) return "given";
+  switch (detector) {
+    case Detector::cluster:
+      return "cluster";
+    case Detector::none:
+      break;
+  }
+  return "none";
 }
 
 void skip(std::size_t frame, const std::string& problem, double sweeps_ahead, const Pipeline& pipeline,
@@ -95,7 +113,9 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
   summary.warnings = dataset.warnings;
   if (detections) warn_of_strange_boxes(dataset, indices, *detections, summary);
 
-  RunOutput output(options.out, dataset.calibration.T_camera0_lidar, detections.has_value());
+  summary.boxes_from = boxes_from(detections.has_value(), config.detection.detector);
+  const bool with_objects = detections || config.detection.detector != Detector::none;
+  RunOutput output(options.out, dataset.calibration.T_camera0_lidar, with_objects);
   write_file_atomically(options.out / "config.yaml", to_yaml(config));
   Pipeline pipeline(config);
   std::optional<Eigen::Vector3d> last_position;
@@ -119,10 +139,7 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
       skip(dataset.scans->frame(indices[i]), reading.problem, ++skipped_in_a_row, pipeline, output, summary);
     } else {
       skipped_in_a_row = 0.0;
-      std::vector<Detection> boxes;
-      if (detections) boxes = detections->detections_at(reading.scan->frame, reading.scan->stamp_s);
-      summary.detections += boxes.size();
-      const FrameResult result = pipeline.process(*reading.scan, boxes);
+      const FrameResult result = process(*reading.scan, detections, pipeline);
       output.write(result);
       tally(result, summary);
       const Eigen::Vector3d& position = result.T_map_lidar.translation();

@@ -32,6 +32,7 @@ struct RunSummary {
   std::size_t failed_checks = 0;        ///< consistency checks without a set that passed
   std::size_t invalid_points = 0;
   std::size_t detections = 0;
+  std::string boxes_from = "none";  ///< given, or the detector that found them
   double path_m = 0.0;
   std::size_t map_points = 0;
   bool interrupted = false;
@@ -40,7 +41,7 @@ struct RunSummary {
 };
 
 /// Runs the pipeline over a data set and writes its results; the next scan is read while one is computed.
-/// @param detections   boxes by frame; none: no objects are cut out
+/// @param detections   boxes by frame; none: the detector of the configuration looks for objects
 /// @param on_scan      called after each scan with the number done and the number in total; may be empty
 /// @param should_stop  asked before each scan; true ends the run early with everything written
 /// @throws InputError when no scan can be used, or the results cannot be written

@@ -75,6 +75,7 @@ std::string to_json(const Dataset& dataset, const PipelineConfig& config, const 
       {"odometry_degenerate", summary.odometry_degenerate},
       {"failed_consistency_checks", summary.failed_checks},
       {"invalid_points", summary.invalid_points},
+      {"boxes_from", summary.boxes_from},
       {"detections", summary.detections},
       {"path_m", summary.path_m},
       {"static_map_points", summary.map_points},

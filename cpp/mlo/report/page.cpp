@@ -154,6 +154,9 @@ std::string overview(std::span<const ReportedRun> runs) {
   rows.push_back({"sequence", cells_of(runs, [](const ReportedRun& run) {
                     return run.run.input_sequence.empty() ? run.run.input_format : run.run.input_sequence;
                   })});
+  rows.push_back({"boxes from", cells_of(runs, [](const ReportedRun& run) {
+                    return run.run.boxes_from.empty() ? std::string("-") : run.run.boxes_from;
+                  })});
   add_counters(runs, rows);
   add_errors(runs, rows);
   add_times(runs, rows);

@@ -37,6 +37,7 @@ void read_summary(const fs::path& file, RunFolder& run) {
     throw InputError(fmt::format("{}: is no JSON object; run 'mlo run' again", file.string()));
   }
   run.version = json.value("version", "");
+  run.boxes_from = json.value("boxes_from", "");
   if (const auto input = json.find("input"); input != json.end() && input->is_object()) {
     run.input_folder = input->value("folder", "");
     run.input_format = input->value("format", "");

@@ -29,6 +29,7 @@ struct RunFolder {
   std::string input_folder;
   std::string input_format;
   std::string input_sequence;
+  std::string boxes_from;  ///< what found the objects: given, none or the detector
   /// Numbers of run.json by their names, in its order.
   std::vector<std::pair<std::string, double>> counters;
   std::vector<std::string> warnings;

@@ -31,6 +31,7 @@ bool run_unless_finished(const Dataset& dataset, const std::optional<DetectionLi
   if (is_finished(folder, scans_up_to(dataset, options.last_frame))) return true;
   PipelineConfig base;
   base.sensor = dataset.sensor;
+  base.detection.detector = Detector::none;  // boxes are the published ones, or there are none
   const PipelineConfig config = resolve({.presets = variant.presets, .settings = variant.settings}, base);
   const RunSummary summary =
       run(dataset, detections, config, {.out = folder, .last_frame = options.last_frame}, progress.on_scan,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "mlo/io/atomic_file.hpp"
+#include "mlo/io/detections.hpp"
 #include "mlo/io/point_cloud_file.hpp"
 #include "mlo/io/trajectory_file.hpp"
 

@@ -53,10 +53,6 @@ struct DetectorErrors {
 std::vector<Detection> detect(const std::vector<ObjectTruth>& objects, const DetectorErrors& errors,
                               Random random);
 
-/// Lines of the project's own CSV (docs/detections.md): lidar frame, box centre.
-std::string detection_csv_header();
-std::string detection_csv_lines(std::size_t frame, const std::vector<Detection>& detections);
-
 /// Lines of the files that AB3DMOT reads: `frame,type,x1,y1,x2,y2,score,h,w,l,x,y,z,ry,alpha` with type 1
 /// pedestrian, 2 car (also vans, which such detectors do not tell apart), 3 cyclist; others are left out, as
 /// is what the camera does not see. The score is a logit.
