@@ -2,7 +2,8 @@
 """Runs `mlo run` and `mlo eval trajectory` on four KITTI extracts with several configurations.
 
 Prints, and writes to OUT/results.md, one table of errors and speed by variant and sequence, and one of the time of
-each stage by sequence. The numbers behind it go to OUT/results.json.
+each stage by sequence. The numbers behind it go to OUT/results.json. No objects are looked for, unless a variant says
+so (--set detection.detector=cluster).
 
 ROOT holds kitti_odometry, kitti_raw and truth_lidar; OUT/<variant>/<sequence> becomes the folder of each run.
 """
@@ -83,7 +84,8 @@ def scan_status(path):
 
 def measure(program, data, sequence, variant, out):
     """One run with its errors: the numbers of one cell of the table."""
-    run_mlo(program, ["run", str(data / sequence.folder), "--out", str(out), *variant.arguments])
+    run_mlo(program, ["run", str(data / sequence.folder), "--out", str(out), "--set", "detection.detector=none",
+                      *variant.arguments])
     errors = json.loads(run_mlo(program, ["eval", "trajectory", "--json", "--truth", str(data / sequence.truth),
                                           "--estimate", str(out / "trajectory.txt")]))["estimates"][0]
     report = json.loads((out / "run.json").read_text(encoding="utf-8"))
