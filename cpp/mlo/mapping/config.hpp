@@ -141,16 +141,79 @@ struct StaticMapConfig {
   }
 };
 
+/// Which objects move, section III-D-1.
+struct DynamicCheckConfig {
+  bool static_objects_localise = false;
+  double moving_probability = 0.5;
+  double min_displacement_m = 0.07;
+  double min_significance = 4.0;
+  double in_place_m = 0.25;
+  double in_place_fit = 0.7;
+  double min_fit_gain = 0.12;
+  int min_sightings = 5;
+  double same_place_m = 1.0;
+  int scans_displaced = 2;
+  int scans_in_place = 3;
+  int min_points = 10;
+  double map_spacing_m = 0.1;
+  double gate_m = 0.5;
+  double kernel_m = 0.15;
+  double point_sd_m = 0.03;
+  double prior_shift_sd_m = 0.5;
+  double prior_turn_sd_rad = 0.02;
+  int iterations = 6;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("static_objects_localise", static_objects_localise, Anything{},
+          "points of objects at rest take part in the map refinement, as in the paper; off is its MLO-ddo");
+    visit("moving_probability", moving_probability, between(0.0, 1.0),
+          "by speed alone, objects count as moving from here on: lower finds slow ones sooner, and noise");
+    visit("min_displacement_m", min_displacement_m, between(0.0, 10.0),
+          "an object that rested moves when its points lie this far from where they were [m]");
+    visit("min_significance", min_significance, between(0.0, 100.0), "and this many standard deviations");
+    visit("min_fit_gain", min_fit_gain, between(-1.0, 1.0),
+          "and when this much more of them fit after undoing it: higher bears new sides of an object");
+    visit("in_place_m", in_place_m, between(0.0, 10.0),
+          "whatever its speed seems, an object whose points surely lie within this of where they were is at "
+          "rest [m]");
+    visit("in_place_fit", in_place_fit, between(0.0, 1.0), "if this share of them lies on its map");
+    visit("min_sightings", min_sightings, between(1, 1000),
+          "the map of an object at rest counts from so many scans on");
+    visit("same_place_m", same_place_m, between(0.0, 10.0),
+          "a detection this near to an object at rest is taken for it before tracking says so [m]");
+    visit("scans_displaced", scans_displaced, between(1, 100), "in so many scans in a row");
+    visit("scans_in_place", scans_in_place, between(1, 1000),
+          "an object too slow for its speed to tell is at rest again after so many scans in a row in place");
+    visit("min_points", min_points, between(3, 10000), "with fewer only the speed counts");
+    visit("map_spacing_m", map_spacing_m, between(0.01, 1.0),
+          "between points in the map of an object: detail against memory [m]");
+    visit("gate_m", gate_m, between(0.05, 10.0),
+          "points farther from the map are new parts of the object [m]");
+    visit("kernel_m", kernel_m, between(0.001, 10.0),
+          "scale of the Geman-McClure kernel: smaller trusts outliers less [m]");
+    visit("point_sd_m", point_sd_m, between(0.001, 1.0),
+          "standard deviation of a point, at least: larger believes in motion later [m]");
+    visit("prior_shift_sd_m", prior_shift_sd_m, between(0.01, 100.0),
+          "motion that is expected of an object at rest: smaller bears surfaces that slide along themselves "
+          "[m]");
+    visit("prior_turn_sd_rad", prior_turn_sd_rad, between(0.001, 10.0), "the same for its turning [rad]");
+    visit("iterations", iterations, between(1, 100), "Gauss-Newton iterations");
+  }
+};
+
 struct MappingConfig {
   LocalMapConfig local_map;
   RefinementConfig refinement;
   StaticMapConfig static_map;
+  DynamicCheckConfig dynamic_check;
 
   template <class Visitor>
   void fields(Visitor& visit) {
     visit.group("local_map", local_map, "The map around the robot that scans are registered to.");
     visit.group("refinement", refinement, "Scan-to-map registration (paper, section III-D-2).");
     visit.group("static_map", static_map, "The long-term map that is saved.");
+    visit.group("dynamic_check", dynamic_check, "Which objects move (paper, section III-D-1).");
   }
 };
 

@@ -8,6 +8,7 @@
 
 #include "mlo/core/ego_motion.hpp"
 #include "mlo/core/se3.hpp"
+#include "mlo/mapping/trajectory_list.hpp"
 #include "mlo/odometry/consistency_check.hpp"
 #include "mlo/tracking/tracker.hpp"
 
@@ -71,6 +72,7 @@ struct FrameResult {
   PoseEstimate refinement;  ///< T_map_lidar at the reference time of the sweep
   ConsistencyReport consistency;
   std::vector<TrackedObject> objects;  ///< all tracks that live, in the map frame; none without detections
+  std::vector<MappedObject> finished_objects;  ///< maps of those that are no longer followed
   PerceptCounts counts;
   StageTimes times;
 

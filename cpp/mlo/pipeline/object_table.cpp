@@ -22,7 +22,7 @@ std::string object_table_row(const ObjectRow& place, const TrackedObject& object
                         .stamp_s = place.stamp_s,
                         .id = object.id,
                         .type = std::string(to_string(object.object_class)),
-                        .state = object.is_moving() ? "moving" : "at_rest",
+                        .state = object.moving ? "moving" : "at_rest",
                         .T_map_object = object.T_map_object,
                         .size_lwh_m = object.box.size_lwh_m,
                         .points = object.num_points};

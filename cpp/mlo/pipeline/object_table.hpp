@@ -27,6 +27,7 @@ std::string object_table_row(const ObjectRow& place, const TrackedObject& object
 class ObjectTrajectories {
  public:
   void add(const ObjectRow& place, const TrackedObject& object);
+  bool contains(long id) const { return by_id_.contains(id); }
   /// FOLDER/00012.txt for the object with id 12; the folder is made if missing.
   /// @throws InputError when a file cannot be written
   void write(const std::filesystem::path& folder) const;

@@ -49,7 +49,7 @@ bool agrees(const SE3& T_odometry, const SE3& prediction, const MotionConfig& co
 std::vector<Box3d> boxes_of_moving(std::span<const TrackedObject> objects) {
   std::vector<Box3d> boxes;
   for (const TrackedObject& object : objects) {
-    if (object.reported && object.is_moving()) boxes.push_back(object.box);
+    if (object.reported && object.moving) boxes.push_back(object.box);
   }
   return boxes;
 }
@@ -69,6 +69,18 @@ std::vector<FeaturePoint> thin(std::span<const FeaturePoint> points, double voxe
                                         [](const FeaturePoint& point) { return point.p_lidar; });
 }
 
+std::vector<FeaturePoint> to_features(std::span<const Point> points) {
+  std::vector<FeaturePoint> features;
+  features.reserve(points.size());
+  for (const Point& point : points) {
+    features.push_back({.p_lidar = point.p_lidar,
+                        .sweep_fraction = point.sweep_fraction,
+                        .intensity = point.intensity,
+                        .ring = point.ring});
+  }
+  return features;
+}
+
 // All environment candidates of a scan, edges first, so that they are not thinned away.
 std::vector<FeaturePoint> all_candidates(const Percept& seen) {
   std::vector<FeaturePoint> all = seen.edge.candidates;
@@ -84,6 +96,7 @@ Pipeline::Pipeline(const PipelineConfig& config)
       local_maps_{LocalMap(config.mapping.local_map), LocalMap(config.mapping.local_map),
                   LocalMap(config.mapping.local_map)},
       static_map_(config.mapping.static_map),
+      trajectories_(config.mapping.dynamic_check, config.mapping.refinement),
       tracker_(config.tracking) {}
 
 FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detections) {
@@ -126,7 +139,13 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
 
   const SE3 T_map_lidar =
       result.refinement.usable() ? result.refinement.T_target_source : state_.T_map_lidar * T_odometry;
-  result.objects = timed(times, Stage::tracking, [&] { return track(prepared, seen, T_map_lidar, sweep); });
+  const SE3 increment = sweep_increment(T_odometry, T_map_lidar);
+  const SweepMotion motion = SweepMotion::from_increment(increment, sweep);
+  timed(times, Stage::tracking, [&] {
+    result.objects = track(prepared, seen, T_map_lidar, sweep);
+    find_moving(seen, motion, T_map_lidar, result.objects);
+    result.finished_objects = trajectories_.take_finished();
+  });
   timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, T_map_lidar, sweep, result); });
   state_.likely_objects = std::move(found.likely);
   return result;
@@ -168,6 +187,20 @@ std::vector<TrackedObject> Pipeline::track(const Scan& scan, const Percept& seen
   return tracker_.process(seen.objects, T_map_lidar, dt_s, timing);
 }
 
+// Detections where objects rested in earlier scans, with the maps of these.
+std::vector<Pipeline::ObjectAtRest> Pipeline::find_objects_at_rest(const Percept& seen,
+                                                                   const SE3& T_previous_current) const {
+  std::vector<ObjectAtRest> at_rest;
+  if (!config_.mapping.dynamic_check.static_objects_localise) return at_rest;
+  const SE3 T_map_lidar = state_.T_map_lidar * T_previous_current;
+  for (const ObjectPoints& object : seen.objects) {
+    const LocalMap* map = trajectories_.map_at_rest(T_map_lidar * object.detection.box.center_lidar_m);
+    if (map == nullptr) continue;
+    at_rest.push_back({thin(to_features(object.points), config_.mapping.refinement.source_voxel_m), map});
+  }
+  return at_rest;
+}
+
 PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
                                    const SweepTiming& timing) {
   PoseEstimate refined;
@@ -184,9 +217,13 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
   } else {
     rest = thin(all_candidates(seen), config.source_voxel_m);
   }
-  const std::vector<RefinementTerm> terms{{ground, &local_maps_.ground, ExpectedShape::plane},
-                                          {edges, &local_maps_.edge, ExpectedShape::line},
-                                          {rest, &local_maps_.surface, ExpectedShape::plane}};
+  std::vector<RefinementTerm> terms{{ground, &local_maps_.ground, ExpectedShape::plane},
+                                    {edges, &local_maps_.edge, ExpectedShape::line},
+                                    {rest, &local_maps_.surface, ExpectedShape::plane}};
+  const std::vector<ObjectAtRest> at_rest = find_objects_at_rest(seen, T_previous_current);
+  for (const ObjectAtRest& object : at_rest) {
+    terms.push_back({object.points, object.map, ExpectedShape::plane});
+  }
   RefinementGuess guess{state_.T_map_lidar, T_previous_current, motion_known, timing};
   refined = refine(terms, guess, config);
 
@@ -245,10 +282,40 @@ void Pipeline::update_static_map(const Scan& scan, const Percept& seen, const Sw
   static_map_.spool_far(T_map_lidar.translation().cast<float>());
 }
 
+// The motion since the previous scan that removes distortion from what is put into maps.
+SE3 Pipeline::sweep_increment(const SE3& T_odometry, const SE3& T_map_lidar) const {
+  const bool follow_map = config_.mapping.refinement.correct_distortion;
+  return follow_map && !state_.empty ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
+}
+
+void Pipeline::find_moving(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar,
+                           std::vector<TrackedObject>& objects) {
+  std::vector<ObjectSight> sights;
+  for (const TrackedObject& object : objects) {
+    ObjectSight sight{.id = object.id,
+                      .T_map_object = object.T_map_object,
+                      .size_lwh_m = object.box.size_lwh_m,
+                      .moving_probability = object.moving_probability};
+    if (object.detection) {
+      for (const Point& point : seen.objects[*object.detection].points) {
+        const Eigen::Vector3d p_lidar =
+            motion.undistort(point.p_lidar.cast<double>(), static_cast<double>(point.sweep_fraction));
+        sight.points_map.push_back((T_map_lidar * p_lidar).cast<float>());
+      }
+    }
+    sights.push_back(std::move(sight));
+  }
+  const std::vector<Mobility> mobilities = trajectories_.update(sights);
+  for (std::size_t i = 0; i < objects.size(); ++i) objects[i].moving = mobilities[i] == Mobility::moving;
+}
+
+std::vector<MappedObject> Pipeline::object_maps() const {
+  return trajectories_.maps();
+}
+
 void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
                       const SweepTiming& timing, FrameResult& result) {
-  const bool follow_map = config_.mapping.refinement.correct_distortion;
-  const SE3 increment = follow_map && !state_.empty ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
+  const SE3 increment = sweep_increment(T_odometry, T_map_lidar);
   const SweepMotion motion = SweepMotion::from_increment(increment, timing);
 
   State next;

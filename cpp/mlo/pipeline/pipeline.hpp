@@ -10,6 +10,7 @@
 #include "mlo/detection/detect.hpp"
 #include "mlo/mapping/local_map.hpp"
 #include "mlo/mapping/static_map.hpp"
+#include "mlo/mapping/trajectory_list.hpp"
 #include "mlo/odometry/reference_scan.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
 #include "mlo/perception/ground.hpp"
@@ -35,6 +36,8 @@ class Pipeline {
   PredictedPoses predict_poses(double sweeps_ahead) const;
 
   const StaticMap& static_map() const { return static_map_; }
+  /// Of the objects that are followed; those of others were in FrameResult::finished_objects.
+  std::vector<MappedObject> object_maps() const;
 
  private:
   /// What one scan leaves to the next; replaced as a whole at the end of process().
@@ -67,6 +70,14 @@ class Pipeline {
                            const SweepTiming& timing);
   std::vector<TrackedObject> track(const Scan& scan, const Percept& seen, const SE3& T_map_lidar,
                                    const SweepTiming& timing);
+  struct ObjectAtRest {
+    std::vector<FeaturePoint> points;
+    const LocalMap* map;
+  };
+  std::vector<ObjectAtRest> find_objects_at_rest(const Percept& seen, const SE3& T_previous_current) const;
+  SE3 sweep_increment(const SE3& T_odometry, const SE3& T_map_lidar) const;
+  void find_moving(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar,
+                   std::vector<TrackedObject>& objects);
   void clear_maps();
   void clear_local_maps();
   bool local_maps_are_empty() const;
@@ -81,6 +92,7 @@ class Pipeline {
   State state_;
   LocalMaps local_maps_;
   StaticMap static_map_;
+  TrajectoryList trajectories_;
   Tracker tracker_;
 };
 

@@ -94,6 +94,7 @@ void finish(const Pipeline& pipeline, const RunOutput& output, RunSummary& summa
   const std::vector<MapPoint> map = pipeline.static_map().points();
   output.write_map(map);
   output.write_object_trajectories();
+  output.write_object_maps(pipeline.object_maps());
   summary.map_points = map.size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",

@@ -90,6 +90,7 @@ void RunOutput::write(const FrameResult& result) {
   trajectory_tum_.write_row(tum_row(result.stamp_s, result.T_map_lidar));
   per_scan_.write_row(per_scan_row(result));
   if (objects_) write_objects(result);
+  write_object_maps(result.finished_objects);
 }
 
 void RunOutput::write_objects(const FrameResult& result) {
@@ -98,6 +99,15 @@ void RunOutput::write_objects(const FrameResult& result) {
     if (!object.reported) continue;
     objects_->write_row(object_table_row(place, object));
     object_trajectories_.add(place, object);
+  }
+}
+
+void RunOutput::write_object_maps(std::span<const MappedObject> objects) const {
+  for (const MappedObject& object : objects) {
+    if (object.points_object.empty() || !object_trajectories_.contains(object.id)) continue;
+    std::vector<MapPoint> points;
+    for (const Eigen::Vector3f& p : object.points_object) points.push_back({p, 0.0F, MapLabel::object});
+    write_ply(create_folder(folder_ / "object_maps") / fmt::format("{:05}.ply", object.id), points);
   }
 }
 

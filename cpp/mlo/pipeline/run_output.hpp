@@ -28,6 +28,9 @@ class RunOutput {
   /// the files whose row numbers are frame numbers (not in trajectory_tum.txt).
   void write_skipped(std::size_t frame, const std::string& problem, const PredictedPoses& predicted);
 
+  /// object_maps/ID.ply, in the object's own frame, of those that were reported.
+  void write_object_maps(std::span<const MappedObject> objects) const;
+
   /// object_trajectories/ID.txt, of all objects that were reported.
   void write_object_trajectories() const;
 

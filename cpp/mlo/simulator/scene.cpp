@@ -27,7 +27,7 @@ std::string_view name_of(SceneKind kind) {
 
 Scene make_scene(const SceneOptions& options) {
   constexpr double kShortest_m = 1.0;
-  constexpr double kLongest_m = 5000.0;
+  constexpr double kLongest_m = 20000.0;
   if (!(options.length_m >= kShortest_m && options.length_m <= kLongest_m)) {
     throw InputError(fmt::format("simulate: length is {} m; choose {} to {} m", options.length_m, kShortest_m,
                                  kLongest_m));

@@ -249,6 +249,7 @@ TrackedObject Tracker::describe(const Track& track) const {
                        .velocity_map_mps = track.filter.velocity_mps(),
                        .turn_rate_radps = track.filter.turn_rate_radps(),
                        .moving_probability = track.filter.moving_probability(),
+                       .moving = track.filter.moving_probability() > 0.5,
                        .planar_covariance = track.filter.planar_covariance(),
                        .yaw_covariance = track.filter.yaw_covariance(),
                        .existence = track.existence,

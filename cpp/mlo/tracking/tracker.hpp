@@ -30,7 +30,7 @@ struct TrackedObject {
   Eigen::Vector2d velocity_map_mps = Eigen::Vector2d::Zero();
   double turn_rate_radps = 0.0;
   double moving_probability = 0.5;
-  bool is_moving() const { return moving_probability > 0.5; }
+  bool moving = false;
   /// Of [x; y; vx; vy] in the map frame, [m] and [m/s].
   ObjectFilter::Matrix4d planar_covariance = ObjectFilter::Matrix4d::Zero();
   Eigen::Matrix2d yaw_covariance = Eigen::Matrix2d::Zero();  ///< of [yaw; turn rate], [rad] and [rad/s]

@@ -1,0 +1,102 @@
+#include "mlo/mapping/trajectory_list.hpp"
+
+#include <algorithm>
+
+#include "mlo/core/parallel.hpp"
+
+namespace mlo {
+namespace {
+
+LocalMapConfig local_map_config(const DynamicCheckConfig& config) {
+  LocalMapConfig map;
+  map.min_spacing_m = config.map_spacing_m;
+  return map;
+}
+
+}  // namespace
+
+std::vector<Mobility> TrajectoryList::update(std::span<const ObjectSight> sights) {
+  std::vector<Entry*> entries;
+  std::map<long, Entry> followed;
+  for (const ObjectSight& sight : sights) {
+    auto node = entries_.extract(sight.id);
+    if (node.empty()) {
+      entries.push_back(&followed.try_emplace(sight.id, local_map_config(config_)).first->second);
+      entries.back()->T_map_object = sight.T_map_object;
+    } else {
+      entries.push_back(&followed.insert(std::move(node)).position->second);
+    }
+  }
+  finished_ = maps();
+  entries_ = std::move(followed);
+  parallel_for_each_index(sights.size(), [&](std::size_t i) { update(*entries[i], sights[i]); });
+  std::vector<Mobility> mobilities;
+  for (const Entry* entry : entries) mobilities.push_back(entry->mobility);
+  return mobilities;
+}
+
+std::vector<MappedObject> TrajectoryList::maps() const {
+  std::vector<MappedObject> maps;
+  for (const auto& [id, entry] : entries_) maps.push_back({id, entry.map.points_object()});
+  return maps;
+}
+
+const LocalMap* TrajectoryList::map_at_rest(const Eigen::Vector3d& center_map) const {
+  const auto fits = [&](const Entry& entry) {
+    const double distance_m = (entry.T_map_object.translation() - center_map).head<2>().norm();
+    return entry.mobility == Mobility::at_rest && entry.sightings >= config_.min_sightings &&
+           entry.scans_displaced == 0 && distance_m < config_.same_place_m;
+  };
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const auto& item) { return fits(item.second); });
+  return found == entries_.end() ? nullptr : &found->second.at_rest;
+}
+
+void TrajectoryList::update(Entry& entry, const ObjectSight& sight) const {
+  const Displacement displacement = measure_displacement(sight.points_map, entry.at_rest, config_, shapes_);
+  const bool displaced = is_displaced(displacement);
+  const bool fast = sight.moving_probability > config_.moving_probability;
+  if (entry.mobility == Mobility::at_rest) {
+    // Of a map that is still young, new sides of the object look like its motion.
+    const bool mature = entry.sightings >= config_.min_sightings;
+    entry.scans_displaced = displaced && mature ? entry.scans_displaced + 1 : 0;
+    const bool starts = fast && !is_in_place(displacement);
+    if (starts || entry.scans_displaced >= config_.scans_displaced) {
+      entry.sightings = 0;
+      entry.mobility = Mobility::moving;
+      entry.too_slow_to_tell = !fast;
+      entry.scans_displaced = 0;
+      entry.scans_in_place = 0;
+      entry.at_rest.clear();
+      entry.map.clear();
+    }
+  } else {
+    if (displaced) entry.at_rest.clear();
+    if (fast) entry.too_slow_to_tell = false;
+    entry.scans_in_place = fast || displaced ? 0 : entry.scans_in_place + 1;
+    if (entry.scans_in_place >= (entry.too_slow_to_tell ? config_.scans_in_place : 1)) {
+      entry.mobility = Mobility::at_rest;
+      entry.sightings = 0;
+      entry.T_map_object = sight.T_map_object;
+    }
+  }
+  if (!sight.points_map.empty()) ++entry.sightings;
+  if (entry.scans_displaced == 0) entry.at_rest.insert(sight.points_map);
+  const bool at_rest = entry.mobility == Mobility::at_rest;
+  entry.map.insert(sight.points_map, at_rest ? entry.T_map_object : sight.T_map_object,
+                   config_.map_spacing_m);
+}
+
+bool TrajectoryList::is_displaced(const Displacement& displacement) const {
+  return displacement.known && displacement.length_m() > config_.min_displacement_m &&
+         displacement.significance() > config_.min_significance &&
+         displacement.fit_after - displacement.fit_before > config_.min_fit_gain;
+}
+
+bool TrajectoryList::is_in_place(const Displacement& displacement) const {
+  constexpr double kSure = 2.0;  // standard deviations
+  return displacement.known && displacement.fit_before > config_.in_place_fit &&
+         displacement.length_m() + kSure * displacement.sd_m() < config_.in_place_m;
+}
+
+}  // namespace mlo

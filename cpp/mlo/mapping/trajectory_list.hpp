@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "mlo/core/labelled_point.hpp"
+#include "mlo/core/se3.hpp"
+#include "mlo/mapping/config.hpp"
+#include "mlo/mapping/local_map.hpp"
+#include "mlo/mapping/object_map.hpp"
+
+namespace mlo {
+
+/// One object in one scan, as tracking has it.
+struct ObjectSight {
+  long id = 0;
+  SE3 T_map_object;
+  Eigen::Vector3d size_lwh_m = Eigen::Vector3d::Zero();
+  double moving_probability = 0.5;               ///< by its speed
+  std::vector<Eigen::Vector3f> points_map = {};  ///< of this scan, map frame [m]; empty when it was not seen
+};
+
+/// The map of an object that is no longer followed, or of one that is.
+struct MappedObject {
+  long id = 0;
+  std::vector<Eigen::Vector3f> points_object;  ///< in its own frame [m]
+};
+
+/// The absolute trajectory tracking list (ATTL) of the paper, section III-D-1: which objects move, by their
+/// speed and by how far their points lie from where they were at rest, and a map of each.
+class TrajectoryList {
+ public:
+  TrajectoryList(const DynamicCheckConfig& config, const RefinementConfig& shapes)
+      : config_(config), shapes_(shapes) {}
+
+  /// Takes the objects of the next scan; those that are not among them are forgotten. Objects run in
+  /// parallel.
+  /// @return whether each moves, in their order
+  std::vector<Mobility> update(std::span<const ObjectSight> sights);
+
+  /// The map of the object that has rested at a place (map frame [m]) for long enough to help localisation;
+  /// null where there is none.
+  const LocalMap* map_at_rest(const Eigen::Vector3d& center_map) const;
+
+  /// Maps of the objects that the last update forgot.
+  std::vector<MappedObject> take_finished() { return std::exchange(finished_, {}); }
+  /// Maps of those that are followed.
+  std::vector<MappedObject> maps() const;
+
+ private:
+  struct Entry {
+    explicit Entry(const LocalMapConfig& config) : at_rest(config) {}
+    Mobility mobility = Mobility::at_rest;  // at first sight
+    int sightings = 0;                      // at rest, or in motion
+    int scans_displaced = 0;                // in a row, while at rest
+    bool too_slow_to_tell = false;          // moves, but only its displacement shows it
+    int scans_in_place = 0;                 // in a row, while moving
+    SE3 T_map_object;                       // at rest: the oldest pose
+    LocalMap at_rest;                       // its points while it rests, map frame
+    ObjectMap map;
+  };
+
+  void update(Entry& entry, const ObjectSight& sight) const;
+  bool is_displaced(const Displacement& displacement) const;
+  bool is_in_place(const Displacement& displacement) const;
+
+  DynamicCheckConfig config_;
+  RefinementConfig shapes_;
+  std::map<long, Entry> entries_;
+  std::vector<MappedObject> finished_;
+};
+
+}  // namespace mlo
