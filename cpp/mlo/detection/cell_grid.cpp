@@ -56,7 +56,7 @@ void connect(const CellGrid& grid, double gap_m, double growth, DisjointSets& se
   for (std::uint32_t i = 0; i < grid.cells().size(); ++i) {
     const CellGrid::Cell& cell = grid.cells()[i];
     const double allowed_m = gap_m + growth * static_cast<double>(cell.range_m);
-    const auto radius = static_cast<std::size_t>(allowed_m / static_cast<double>(grid.cell_m()) + 0.5);
+    const auto radius = static_cast<std::size_t>(std::lround(allowed_m / static_cast<double>(grid.cell_m())));
     while (discs.size() <= radius) discs.push_back(half_disc(static_cast<int>(discs.size())));
     for (const Offset& offset : discs[radius]) {
       const int other = grid.find(cell.column + offset.column, cell.row + offset.row);

@@ -21,7 +21,7 @@ GroundHeights::GroundHeights(std::span<const Point> points, std::span<const std:
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f& p = points[i].p_lidar;
     if (is_ground[i] == 0 || p.head<2>().cwiseAbs().maxCoeff() >= reach_m_) continue;
-    const auto cell = static_cast<std::size_t>(index_of(p.y()) * side_ + index_of(p.x()));
+    const std::size_t cell = place(index_of(p.x()), index_of(p.y()));
     sum[cell] += p.z();
     count[cell] += 1.0F;
   }
@@ -44,14 +44,14 @@ void GroundHeights::fill() {
     const std::vector<float> before = z_;
     for (int row = 0; row < side_; ++row) {
       for (int column = 0; column < side_; ++column) {
-        float& z = z_[static_cast<std::size_t>(row * side_ + column)];
+        float& z = z_[place(column, row)];
         if (!std::isnan(z)) continue;
         all_known = false;
         float sum = 0.0F;
         int known = 0;
         for (int r = std::max(row - 1, 0); r <= std::min(row + 1, side_ - 1); ++r) {
           for (int c = std::max(column - 1, 0); c <= std::min(column + 1, side_ - 1); ++c) {
-            const float neighbor = before[static_cast<std::size_t>(r * side_ + c)];
+            const float neighbor = before[place(c, r)];
             if (std::isnan(neighbor)) continue;
             sum += neighbor;
             ++known;
@@ -65,7 +65,7 @@ void GroundHeights::fill() {
 
 float GroundHeights::at(const Eigen::Vector2f& p_lidar) const {
   if (!found_) return 0.0F;
-  return z_[static_cast<std::size_t>(index_of(p_lidar.y()) * side_ + index_of(p_lidar.x()))];
+  return z_[place(index_of(p_lidar.x()), index_of(p_lidar.y()))];
 }
 
 }  // namespace mlo
