@@ -37,9 +37,8 @@ TEST(TrackProgram, SettingsAreRead) {
   const TempFolder folder;
   const std::string detections = folder.write("boxes.csv", boxes()).string();
   const std::string out = (folder.path() / "out").string();
-  const ProgramRun run =
-      run_program({"track", "--detections", detections, "--out", out, "--set",
-                   "tracking.lifecycle.report_existence=20", "--set", "tracking.lifecycle.max_existence=10"});
+  const ProgramRun run = run_program(
+      {"track", "--detections", detections, "--out", out, "--set", "tracking.report.vehicle.bias=-50"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_FALSE(std::filesystem::exists(out + "/trajectories/boxes/00001.txt"));
 }

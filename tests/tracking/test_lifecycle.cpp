@@ -7,7 +7,6 @@ namespace {
 
 constexpr LifecycleConfig config() {
   LifecycleConfig config;
-  config.report_existence = 1.0;
   config.drop_existence = -1.0;
   config.max_coasting = 3;
   config.max_tentative_misses = 1;
@@ -24,26 +23,27 @@ struct Transition {
 
 // The whole state machine: every state, with and without detection, on both sides of every threshold.
 constexpr Transition kTransitions[] = {
-    {tentative, {.existence = 0.9, .misses = 0}, tentative},
-    {tentative, {.existence = 1.0, .misses = 0}, confirmed},
-    {tentative, {.existence = 5.0, .misses = 1}, tentative},
-    {tentative, {.existence = 5.0, .misses = 2}, dead},
-    {tentative, {.existence = -1.1, .misses = 0}, dead},
-    {confirmed, {.existence = 2.0, .misses = 0}, confirmed},
-    {confirmed, {.existence = 0.0, .misses = 0}, confirmed},
-    {confirmed, {.existence = 2.0, .misses = 1}, coasting},
-    {confirmed, {.existence = -1.1, .misses = 1}, dead},
-    {coasting, {.existence = 0.0, .misses = 0}, confirmed},
-    {coasting, {.existence = 0.0, .misses = 3}, coasting},
-    {coasting, {.existence = 5.0, .misses = 4}, dead},
-    {coasting, {.existence = -1.1, .misses = 2}, dead},
-    {dead, {.existence = 9.0, .misses = 0}, dead},
+    {tentative, {.existence = 5.0, .believed = false, .misses = 0}, tentative},
+    {tentative, {.existence = 0.0, .believed = true, .misses = 0}, confirmed},
+    {tentative, {.existence = 5.0, .believed = true, .misses = 1}, tentative},
+    {tentative, {.existence = 5.0, .believed = true, .misses = 2}, dead},
+    {tentative, {.existence = -1.1, .believed = true, .misses = 0}, dead},
+    {confirmed, {.existence = 2.0, .believed = true, .misses = 0}, confirmed},
+    {confirmed, {.existence = 0.0, .believed = false, .misses = 0}, confirmed},
+    {confirmed, {.existence = 2.0, .believed = true, .misses = 1}, coasting},
+    {confirmed, {.existence = -1.1, .believed = true, .misses = 1}, dead},
+    {coasting, {.existence = 0.0, .believed = false, .misses = 0}, confirmed},
+    {coasting, {.existence = 0.0, .believed = false, .misses = 3}, coasting},
+    {coasting, {.existence = 5.0, .believed = true, .misses = 4}, dead},
+    {coasting, {.existence = -1.1, .believed = true, .misses = 2}, dead},
+    {dead, {.existence = 9.0, .believed = true, .misses = 0}, dead},
 };
 
 TEST(Lifecycle, FollowsItsTable) {
   for (const Transition& t : kTransitions) {
     EXPECT_EQ(next_state(t.from, t.evidence, config()), t.to)
-        << to_string(t.from) << ", existence " << t.evidence.existence << ", misses " << t.evidence.misses;
+        << to_string(t.from) << ", existence " << t.evidence.existence << ", believed " << t.evidence.believed
+        << ", misses " << t.evidence.misses;
   }
 }
 

@@ -28,10 +28,10 @@ SE3 car_pose(int scan) {
           {12.0 + radius_m * std::sin(yaw), 4.0 + radius_m * (1.0 - std::cos(yaw)), -0.9}};
 }
 
-ObjectPoints sight(int scan) {
+ObjectPoints sight_at(const SE3& T_map_object, int scan) {
   std::mt19937 random(static_cast<unsigned>(scan));
   std::normal_distribution<double> normal;
-  const SE3 L = lidar_pose(scan).inverse() * car_pose(scan);
+  const SE3 L = lidar_pose(scan).inverse() * T_map_object;
   ObjectPoints object;
   object.detection.object_class = ObjectClass::car;
   object.detection.confidence = 0.999;
@@ -42,6 +42,10 @@ ObjectPoints sight(int scan) {
       yaw + 2.0 * kDegree * normal(random)};
   object.points = test::as_scan(test::seen_from_lidar(L, 0.01, static_cast<unsigned>(scan)));
   return object;
+}
+
+ObjectPoints sight(int scan) {
+  return sight_at(car_pose(scan), scan);
 }
 
 TEST(ObjectOdometry, MotionsOfEquations14And15) {
@@ -86,6 +90,24 @@ TEST(ObjectOdometry, FlippedBoxesDoNotTurnTheObject) {
     const double yaw = so3_log(objects[0].T_map_object.rotation()).z();
     EXPECT_NEAR(yaw, 1.0 * kDegree * scan, 6.0 * kDegree) << "scan " << scan;
   }
+}
+
+TEST(ObjectOdometry, WhatStandsIsAveraged) {
+  const auto spread_m = [](double standing_gain) {
+    TrackingConfig config;
+    config.sgf.standing_gain = standing_gain;
+    Tracker tracker(config);
+    double sum_m = 0.0;
+    for (int scan = 0; scan < 40; ++scan) {
+      const ObjectPoints seen = sight_at(car_pose(0), scan);
+      const auto objects = tracker.process(std::vector{seen}, lidar_pose(scan), kDt_s, kCompensated);
+      if (scan < 20) continue;
+      sum_m += (objects[0].T_map_object.translation() - car_pose(0).translation()).norm();
+    }
+    return sum_m / 20.0;
+  };
+  EXPECT_LT(spread_m(0.1), 0.06);
+  EXPECT_LT(spread_m(0.1), 0.8 * spread_m(1.0));
 }
 
 TEST(ObjectOdometry, AGapIsBridged) {

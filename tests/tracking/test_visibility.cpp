@@ -37,12 +37,17 @@ TEST(Visibility, NothingAndOneBox) {
   EXPECT_EQ(hidden_shares(one), std::vector<double>{0.0});
 }
 
-TEST(Visibility, FieldOfViewNeedsTheWholeBox) {
-  EXPECT_TRUE(in_field_of_view(car_box(20.0, 0.0), 80.0 * kDegree));
-  EXPECT_FALSE(in_field_of_view(car_box(20.0, 16.5), 80.0 * kDegree))
+TEST(Visibility, TheMarginIsThatOfTheOutermostCorner) {
+  // Corners of a car at 20 m, lengthwise: the near ones stand at 18 m, 1 m aside.
+  const double corner_rad = std::atan2(1.0, 18.0);
+  EXPECT_NEAR(field_of_view_margin_rad(car_box(20.0, 0.0), 80.0 * kDegree), 40.0 * kDegree - corner_rad,
+              0.01);
+  const double left = field_of_view_margin_rad(car_box(20.0, 5.0), 80.0 * kDegree);
+  EXPECT_NEAR(field_of_view_margin_rad(car_box(20.0, -5.0), 80.0 * kDegree), left, 1e-12) << "either side";
+  EXPECT_LT(field_of_view_margin_rad(car_box(20.0, 16.5), 80.0 * kDegree), 0.0)
       << "its centre is within, a corner is not";
-  EXPECT_FALSE(in_field_of_view(car_box(-20.0, 0.0), 80.0 * kDegree));
-  EXPECT_TRUE(in_field_of_view(car_box(-20.0, 0.0), 2.0 * std::numbers::pi));
+  EXPECT_LT(field_of_view_margin_rad(car_box(-20.0, 0.0), 80.0 * kDegree), 0.0);
+  EXPECT_DOUBLE_EQ(field_of_view_margin_rad(car_box(-20.0, 0.0), 2.0 * std::numbers::pi), std::numbers::pi);
 }
 
 }  // namespace

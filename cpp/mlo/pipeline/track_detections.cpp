@@ -83,7 +83,7 @@ std::vector<ObjectRecord> kitti_records(std::span<const FrameTracks> frames, con
                          .type = std::string(to_string(object.object_class)),
                          .image_box = *image_box,
                          .box = box_in_lidar(box, T_camera0_level()),
-                         .score = 1.0 / (1.0 + std::exp(-object.existence))});
+                         .score = 1.0 / (1.0 + std::exp(-object.belief))});
     }
   }
   return records;

@@ -93,7 +93,7 @@ struct AssociationConfig {
   }
 };
 
-/// When a track begins, is reported and ends. Its existence is a log-odds: detections add to it, misses take
+/// When a track begins and ends. Its existence is a log-odds: detections add to it, misses take
 /// from it.
 struct LifecycleConfig {
   double evidence_zero_logit = 2.0;
@@ -106,12 +106,10 @@ struct LifecycleConfig {
   double miss_visible = 1.35;
   double miss_hidden = 0.2;
   double max_existence = 4.0;
-  double report_existence = 1.0;
   double drop_existence = -1.0;
   int max_coasting = 60;
   int max_tentative_misses = 2;
   double min_birth_logit = -2.0;
-  double max_report_sd_m = 0.6;
   double max_overlap = 0.14;
 
   template <class Visitor>
@@ -124,8 +122,8 @@ struct LifecycleConfig {
           "up to here a detector sees what is in plain view [m]");
     visit("blind_range_m", blind_range_m, between(0.0, 1000.0), "from here a miss says nothing [m]");
     visit("field_of_view_deg", field_of_view_deg, between(1.0, 360.0),
-          "sector ahead in which the detector finds objects; outside, and partly outside, tracks are "
-          "not reported without detection, and a miss says nothing [deg]");
+          "sector ahead in which the detector finds objects; outside, and partly outside, a miss says "
+          "nothing [deg]");
     visit("evidence_per_logit", evidence_per_logit, between(0.0, 10.0),
           "log-odds for each logit above; below 1 because false alarms repeat themselves");
     visit("max_evidence", max_evidence, between(0.0, 20.0), "most log-odds from one detection, either way");
@@ -133,9 +131,6 @@ struct LifecycleConfig {
     visit("miss_hidden", miss_hidden, between(0.0, 20.0), "log-odds taken by a miss behind another object");
     visit("max_existence", max_existence, between(0.0, 100.0),
           "most log-odds; larger reports long-lived tracks for longer after they were last seen");
-    visit("report_existence", report_existence, between(-20.0, 20.0),
-          "log-odds from which a track is confirmed and reported; higher has fewer false alarms and "
-          "more misses");
     visit("drop_existence", drop_existence, between(-50.0, 20.0), "log-odds below which a track ends");
     visit("max_coasting", max_coasting, between(0, 1000),
           "scans in a row that a confirmed track is predicted without detection; the paper has 2");
@@ -143,11 +138,62 @@ struct LifecycleConfig {
           "the same for one that was never confirmed");
     visit("min_birth_logit", min_birth_logit, between(-20.0, 20.0),
           "least logit of the confidence to begin a track with");
-    visit("max_report_sd_m", max_report_sd_m, between(0.01, 100.0),
-          "a predicted track is reported while its position is known this well, standard deviation [m]");
     visit("max_overlap", max_overlap, between(0.0, 1.0),
           "objects do not stand in each other: of two that share more of their ground area, the one "
           "without detection ends; the less believed one, if they are of different kinds");
+  }
+};
+
+/// Weights of what speaks for and against showing a track (report_belief.hpp): a logistic regression, fitted
+/// to KITTI's labels (docs/tracking.md).
+struct BeliefWeights {
+  double bias = -7.1;
+  double per_existence = 0.45;
+  double per_best_logit = 0.48;
+  double per_logit = 0.40;
+  double far = 5.0;
+  double per_margin_deg = 0.64;
+  double per_sd_m = -0.68;
+  double per_wider_m = 0.0;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("bias", bias, between(-50.0, 50.0),
+          "belief when all that follows is zero; lower has fewer false alarms and more misses");
+    visit("per_existence", per_existence, between(0.0, 50.0), "for each log-odds of existence");
+    visit("per_best_logit", per_best_logit, between(0.0, 50.0),
+          "for each logit of the most confident detection in the track's life");
+    visit("per_logit", per_logit, between(0.0, 50.0),
+          "for each logit of this scan's detection; a predicted track has none");
+    visit("far", far, between(0.0, 50.0),
+          "at the range where the detector sees nothing any more: far objects have low confidence");
+    visit(
+        "per_margin_deg", per_margin_deg, between(0.0, 50.0),
+        "for each degree, up to 4 either way, from the border of the field of view, where boxes are cut off");
+    visit("per_sd_m", per_sd_m, between(-50.0, 0.0),
+          "for each metre of standard deviation, up to 3, of a predicted track's position");
+    visit("per_wider_m", per_wider_m, between(-50.0, 0.0),
+          "for each metre of width above that of usual cars: what is wider is a truck, a tram or a hedge");
+  }
+};
+
+/// What is shown: tracks whose belief, the log-odds that the box is that of an object, is not negative.
+struct ReportConfig {
+  BeliefWeights vehicle{.per_wider_m = -13.3};
+  BeliefWeights pedestrian{.bias = -7.0,
+                           .per_existence = 1.3,
+                           .per_best_logit = 0.37,
+                           .per_logit = 0.08,
+                           .far = 0.7,
+                           .per_margin_deg = 1.0};
+  BeliefWeights cyclist{
+      .bias = -5.6, .per_existence = 0.37, .far = 1.0, .per_margin_deg = 0.2, .per_sd_m = -1.0};
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit.group("vehicle", vehicle, "Cars and all that is not named below.");
+    visit.group("pedestrian", pedestrian, "Pedestrians.");
+    visit.group("cyclist", cyclist, "Cyclists.");
   }
 };
 
@@ -170,6 +216,7 @@ struct SgfConfig {
   int max_iterations = 12;
   double converged_m = 1e-3;
   int target_scans = 5;
+  double standing_gain = 0.1;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -192,6 +239,9 @@ struct SgfConfig {
     visit("converged_m", converged_m, between(1e-6, 1.0), "step that ends the iterations [m], and in rad");
     visit("target_scans", target_scans, between(1, 100),
           "earlier scans whose points are the target, in the object's own frame; 1 is the paper's");
+    visit("standing_gain", standing_gain, between(0.0, 1.0),
+          "part of the estimated motion that counts for an object that stands; smaller averages longer, 1 "
+          "(the paper's) accumulates all of it");
   }
 };
 
@@ -202,6 +252,7 @@ struct TrackingConfig {
   ObjectMotionConfig motion;
   AssociationConfig association;
   LifecycleConfig lifecycle;
+  ReportConfig report;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -209,7 +260,8 @@ struct TrackingConfig {
     visit.group("box_noise", box_noise, "How far off a detector's boxes are.");
     visit.group("motion", motion, "How objects move.");
     visit.group("association", association, "Which detection continues which track.");
-    visit.group("lifecycle", lifecycle, "When a track begins, is reported and ends.");
+    visit.group("lifecycle", lifecycle, "When a track begins and ends.");
+    visit.group("report", report, "Which tracks are shown.");
   }
 };
 

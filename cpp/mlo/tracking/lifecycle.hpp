@@ -32,6 +32,7 @@ constexpr std::string_view to_string(TrackState state) {
 /// What is known of a track's existence after a scan.
 struct TrackEvidence {
   double existence = 0.0;  ///< log-odds
+  bool believed = false;   ///< enough to be reported (report_belief.hpp)
   int misses = 0;          ///< scans in a row without a detection; 0: detected in this one
 };
 
@@ -41,8 +42,7 @@ constexpr TrackState next_state(TrackState state, const TrackEvidence& evidence,
   if (state == TrackState::dead || evidence.existence < config.drop_existence) return TrackState::dead;
   if (state == TrackState::tentative) {
     if (evidence.misses > config.max_tentative_misses) return TrackState::dead;
-    const bool believed = evidence.misses == 0 && evidence.existence >= config.report_existence;
-    return believed ? TrackState::confirmed : TrackState::tentative;
+    return evidence.believed && evidence.misses == 0 ? TrackState::confirmed : TrackState::tentative;
   }
   if (evidence.misses == 0) return TrackState::confirmed;
   return evidence.misses > config.max_coasting ? TrackState::dead : TrackState::coasting;

@@ -77,22 +77,21 @@ ObjectTarget ObjectOdometry::target(const SE3& L_lidar_object, const SgfConfig& 
   return {points, config.voxel_m};
 }
 
-PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const SE3& T_map_object_guess,
-                                    const Eigen::Vector3d& size_lwh_m, int scans_since,
+PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const ObjectPrior& prior,
                                     const SweepTiming& timing, const SgfConfig& config) {
   const SE3 L_previous = T_map_lidar_.inverse() * T_map_object_;
-  const double guess_yaw = same_way(yaw_of(T_map_object_guess), yaw_of(T_map_object_));
+  const double guess_yaw = same_way(yaw_of(prior.T_map_object), yaw_of(T_map_object_));
   const SE3 T_map_object_ahead(
       so3_exp({0.0, 0.0, guess_yaw - yaw_of(T_map_object_)}) * T_map_object_.rotation(),
-      T_map_object_guess.translation());
+      prior.T_map_object.translation());
   const SE3 L_guess = sighting.T_map_lidar.inverse() * T_map_object_ahead;
   const SE3 H_guess = L_previous * L_guess.inverse();
 
   Box3d now = in_lidar(sighting.measurement.box, sighting.T_map_lidar);
   now.yaw_rad = same_way(now.yaw_rad, yaw_of(L_guess));
-  Box3d before{L_previous.translation(), size_lwh_m, yaw_of(L_previous)};
+  Box3d before{L_previous.translation(), prior.size_lwh_m, yaw_of(L_previous)};
   if (config.printed_weights) before = last_box_lidar_;
-  const std::vector<ShapedPoint> points = shape(sighting, scans_since, timing);
+  const std::vector<ShapedPoint> points = shape(sighting, prior.scans_since, timing);
   const ObjectTarget previous_points = target(L_previous, config);
   const BoxMeasurement& noise = sighting.measurement;
   const SgfProblem problem{.target = &previous_points,
@@ -106,11 +105,17 @@ PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const SE3& T
   const SE3 H = estimate.usable() ? estimate.T_target_source : H_guess;
 
   const SE3 delta = T_map_lidar_.inverse() * sighting.T_map_lidar;
-  T_map_object_ = T_map_object_ * body_fixed_motion(L_previous, absolute_motion(delta, H));
+  move_on(body_fixed_motion(L_previous, absolute_motion(delta, H)), prior.moving_probability, config);
   T_map_lidar_ = sighting.T_map_lidar;
   last_box_lidar_ = now;
   remember(points, H, T_map_lidar_.inverse() * T_map_object_, config);
   return estimate;
+}
+
+void ObjectOdometry::move_on(const SE3& body_fixed, double moving_probability, const SgfConfig& config) {
+  moved_map_m_ = T_map_object_.rotation() * body_fixed.translation();
+  const double counts = moving_probability + (1.0 - moving_probability) * config.standing_gain;
+  T_map_object_ = T_map_object_ * interpolate(body_fixed, counts);
 }
 
 void ObjectOdometry::turn_round() {

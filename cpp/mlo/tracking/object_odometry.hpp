@@ -27,6 +27,14 @@ struct ObjectSighting {
   SE3 T_map_lidar;
 };
 
+/// What is known of an object by other means when it is sighted again.
+struct ObjectPrior {
+  SE3 T_map_object;  ///< where it should be; the heading may be flipped
+  Eigen::Vector3d size_lwh_m = Eigen::Vector3d::Zero();
+  double moving_probability = 1.0;
+  int scans_since = 1;  ///< 1 when it was seen in the scan before
+};
+
 /// Pose of one object by accumulated body-fixed motions (paper, section III-C-3), each estimated from points
 /// and boxes of the last sighting and the present one.
 class ObjectOdometry {
@@ -34,29 +42,30 @@ class ObjectOdometry {
   /// The first pose is that of the box.
   ObjectOdometry(const ObjectSighting& first, const SweepTiming& timing, const SgfConfig& config);
 
-  /// Continues by one sighting.
-  /// @param T_map_object_guess  where the object should be by other means; its heading may be flipped
-  /// @param size_lwh_m           what is known of its size by now
-  /// @param scans_since          1 when it was seen in the scan before
+  /// Continues by one sighting. Of an object that stands only a part of the estimated motion counts
+  /// (SgfConfig::standing_gain), so that its pose becomes a mean over its sightings.
   /// @return T_target_source is the relative motion H since the last sighting; when it is not usable, the
-  /// guess counts
-  PoseEstimate update(const ObjectSighting& sighting, const SE3& T_map_object_guess,
-                      const Eigen::Vector3d& size_lwh_m, int scans_since, const SweepTiming& timing,
+  /// prior counts
+  PoseEstimate update(const ObjectSighting& sighting, const ObjectPrior& prior, const SweepTiming& timing,
                       const SgfConfig& config);
 
   /// At the last sighting.
   const SE3& T_map_object() const { return T_map_object_; }
+  /// From the sighting before to the last, as estimated, whatever part of it counted [m].
+  const Eigen::Vector3d& moved_map_m() const { return moved_map_m_; }
   /// Front becomes back.
   void turn_round();
 
  private:
   std::vector<ShapedPoint> shape(const ObjectSighting& sighting, int scans_since,
                                  const SweepTiming& timing) const;
+  void move_on(const SE3& body_fixed, double moving_probability, const SgfConfig& config);
   void remember(std::vector<ShapedPoint> points, const SE3& H, const SE3& L_lidar_object,
                 const SgfConfig& config);
   ObjectTarget target(const SE3& L_lidar_object, const SgfConfig& config) const;
 
   SE3 T_map_object_;
+  Eigen::Vector3d moved_map_m_ = Eigen::Vector3d::Zero();
   SE3 T_map_lidar_;                                     ///< at the last sighting
   Box3d last_box_lidar_;                                ///< the detector's, at the last sighting
   std::deque<std::vector<ShapedPoint>> points_object_;  ///< of earlier sightings, in the object's frame

@@ -6,6 +6,7 @@
 
 #include "mlo/core/parallel.hpp"
 #include "mlo/tracking/ego_from_boxes.hpp"
+#include "mlo/tracking/report_belief.hpp"
 #include "mlo/tracking/visibility.hpp"
 
 namespace mlo {
@@ -119,18 +120,18 @@ void Tracker::update_odometry(Track& track, const ObjectPoints& object, double d
     return;
   }
   const PlacedBox box = track.filter.box();
-  const SE3 before = track.odometry->T_map_object();
-  const int scans_since = track.misses_before + 1;
-  track.relative_motion =
-      track.odometry->update(sighting, box.T_map_object(), box.size_lwh_m, scans_since, timing, config_.sgf);
-  const SE3& now = track.odometry->T_map_object();
+  const ObjectPrior prior{.T_map_object = box.T_map_object(),
+                          .size_lwh_m = box.size_lwh_m,
+                          .moving_probability = track.filter.moving_probability(),
+                          .scans_since = track.misses_before + 1};
+  track.relative_motion = track.odometry->update(sighting, prior, timing, config_.sgf);
   if (track.relative_motion.usable() && dt_s > 0.0) {
-    const Eigen::Vector3d velocity_mps = (now.translation() - before.translation()) / (dt_s * scans_since);
+    const double since_s = dt_s * prior.scans_since;
+    const Eigen::Vector3d velocity_mps = track.odometry->moved_map_m() / since_s;
     const double variance = track.relative_motion.covariance.topLeftCorner<2, 2>().trace();
-    track.filter.update_velocity(velocity_mps.head<2>(), std::sqrt(variance) / (dt_s * scans_since),
-                                 config_.motion);
+    track.filter.update_velocity(velocity_mps.head<2>(), std::sqrt(variance) / since_s, config_.motion);
   }
-  const Eigen::Vector3d heading = now.rotation() * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d heading = track.odometry->T_map_object().rotation() * Eigen::Vector3d::UnitX();
   if (heading.head<2>().dot(Eigen::Vector2d(std::cos(box.yaw_rad), std::sin(box.yaw_rad))) < 0.0) {
     track.odometry->turn_round();
   }
@@ -140,6 +141,7 @@ void Tracker::commit(std::vector<Observation> observations) {
   for (Track& track : tracks_) {
     track.detection.reset();
     track.misses_before = track.misses;
+    track.logit = 0.0;
     track.num_points = 0;
     track.relative_motion = {};
     ++track.age;
@@ -181,8 +183,27 @@ void Tracker::associate_and_update(std::vector<Observation>& observations, bool 
     track.detection = o.index;
     track.misses = 0;
     ++track.hits;
+    track.logit = o.logit;
+    track.best_logit = std::max(track.best_logit, o.logit);
     track.existence += detection_evidence(o.logit, o.range_m, config_.lifecycle);
   }
+}
+
+void Tracker::judge(Track& track) const {
+  const PlacedBox placed = track.filter.box();
+  const Box3d box = in_lidar(placed, T_map_lidar_);
+  const double margin_rad = field_of_view_margin_rad(box, field_of_view_rad(config_.lifecycle));
+  const double sd_m = std::sqrt(track.filter.planar_covariance().topLeftCorner<2, 2>().trace());
+  track.belief = report_belief({.existence = track.existence,
+                                .best_logit = track.best_logit,
+                                .logit = track.logit,
+                                .detectability = detectability(box.center_lidar_m.norm(), config_.lifecycle),
+                                .margin_deg = margin_rad * 180.0 / std::numbers::pi,
+                                .sd_m = track.detection ? 0.0 : sd_m,
+                                .wider_m = excess_width_m(track.object_class, placed.size_lwh_m.y())},
+                               weights_for(track.object_class, config_.report));
+  track.state =
+      next_state(track.state, {track.existence, track.belief >= 0.0, track.misses}, config_.lifecycle);
 }
 
 void Tracker::miss_unmatched() {
@@ -192,13 +213,13 @@ void Tracker::miss_unmatched() {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
     if (!track.detection) {
-      const bool in_view = in_field_of_view(boxes[i], field_of_view_rad(config_.lifecycle));
+      const bool in_view = field_of_view_margin_rad(boxes[i], field_of_view_rad(config_.lifecycle)) > 0.0;
       const double visible =
           (1.0 - hidden[i]) * detectability(boxes[i].center_lidar_m.norm(), config_.lifecycle);
       track.existence += miss_evidence(in_view ? visible : 0.0, config_.lifecycle);
     }
     track.existence = std::min(track.existence, config_.lifecycle.max_existence);
-    track.state = next_state(track.state, {track.existence, track.misses}, config_.lifecycle);
+    judge(track);
   }
 }
 
@@ -217,8 +238,10 @@ void Tracker::begin_tracks(std::vector<Observation> observations) {
                 .object_class = o.object_class,
                 .filter = ObjectFilter(o.measurement, is_wheeled(o.object_class), config_.motion),
                 .existence = detection_evidence(o.logit, o.range_m, config_.lifecycle),
+                .best_logit = o.logit,
+                .logit = o.logit,
                 .detection = o.index};
-    track.state = next_state(track.state, {track.existence, 0}, config_.lifecycle);
+    judge(track);
     tracks_.push_back(std::move(track));
   }
 }
@@ -244,6 +267,7 @@ TrackedObject Tracker::describe(const Track& track) const {
   TrackedObject object{.id = track.id,
                        .object_class = track.object_class,
                        .state = track.state,
+                       .reported = track.state != TrackState::tentative && track.belief >= 0.0,
                        .box = in_lidar(placed, T_map_lidar_),
                        .T_map_object = placed.T_map_object(),
                        .velocity_map_mps = track.filter.velocity_mps(),
@@ -253,6 +277,7 @@ TrackedObject Tracker::describe(const Track& track) const {
                        .planar_covariance = track.filter.planar_covariance(),
                        .yaw_covariance = track.filter.yaw_covariance(),
                        .existence = track.existence,
+                       .belief = track.belief,
                        .age = track.age,
                        .hits = track.hits,
                        .misses = track.misses,
@@ -263,12 +288,6 @@ TrackedObject Tracker::describe(const Track& track) const {
     object.T_map_object = track.odometry->T_map_object();
     object.box = box_at(object.T_map_object, placed.size_lwh_m, T_map_lidar_);
   }
-  const double sd_m = std::sqrt(object.planar_covariance.topLeftCorner<2, 2>().trace());
-  const bool shown_without_detection = sd_m <= config_.lifecycle.max_report_sd_m &&
-                                       in_field_of_view(object.box, field_of_view_rad(config_.lifecycle));
-  object.reported = track.state != TrackState::tentative &&
-                    track.existence >= config_.lifecycle.report_existence &&
-                    (track.detection || shown_without_detection);
   return object;
 }
 

@@ -24,7 +24,7 @@ struct TrackedObject {
   long id = 0;
   ObjectClass object_class = ObjectClass::car;
   TrackState state = TrackState::tentative;
-  bool reported = false;  ///< believed, and known well enough to be shown
+  bool reported = false;  ///< confirmed or coasting, and believed
   Box3d box;              ///< in the lidar frame
   SE3 T_map_object;
   Eigen::Vector2d velocity_map_mps = Eigen::Vector2d::Zero();
@@ -35,6 +35,7 @@ struct TrackedObject {
   ObjectFilter::Matrix4d planar_covariance = ObjectFilter::Matrix4d::Zero();
   Eigen::Matrix2d yaw_covariance = Eigen::Matrix2d::Zero();  ///< of [yaw; turn rate], [rad] and [rad/s]
   double existence = 0.0;                                    ///< log-odds
+  double belief = 0.0;                                       ///< log-odds that the box is an object's
   int age = 0;                                               ///< scans since the first detection, with it
   int hits = 0;
   int misses = 0;                        ///< in a row
@@ -77,6 +78,9 @@ class Tracker {
     ObjectFilter filter;
     TrackState state = TrackState::tentative;
     double existence = 0.0;
+    double best_logit = 0.0;  ///< of its detections
+    double logit = 0.0;       ///< of this scan's detection; 0 without
+    double belief = 0.0;      ///< log-odds that its box is an object's
     int age = 1;
     int hits = 1;
     int misses = 0;
@@ -102,6 +106,7 @@ class Tracker {
   void commit(std::vector<Observation> observations);
   void update_odometry(Track& track, const ObjectPoints& object, double dt_s, const SweepTiming& timing);
   std::vector<TrackedObject> describe_all() const;
+  void judge(Track& track) const;
   void associate_and_update(std::vector<Observation>& observations, bool high_confidence);
   void miss_unmatched();
   void begin_tracks(std::vector<Observation> observations);

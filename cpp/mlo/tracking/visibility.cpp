@@ -43,11 +43,11 @@ double covered_rad(const Sector& behind, const Sector& before) {
 
 }  // namespace
 
-bool in_field_of_view(const Box3d& box, double field_of_view_rad) {
-  if (field_of_view_rad >= 2.0 * std::numbers::pi) return true;
+double field_of_view_margin_rad(const Box3d& box, double field_of_view_rad) {
+  if (field_of_view_rad >= 2.0 * std::numbers::pi) return std::numbers::pi;
   const Sector sector = sector_of(box);
-  const double half_rad = 0.5 * field_of_view_rad;
-  return sector.azimuth_rad + sector.left_rad < half_rad && sector.azimuth_rad + sector.right_rad > -half_rad;
+  return 0.5 * field_of_view_rad -
+         std::max(sector.azimuth_rad + sector.left_rad, -(sector.azimuth_rad + sector.right_rad));
 }
 
 std::vector<double> hidden_shares(std::span<const Box3d> boxes) {

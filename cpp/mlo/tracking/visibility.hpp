@@ -11,8 +11,9 @@ namespace mlo {
 /// boxes cover, in [0, 1]. Heights are not looked at: objects stand on the same ground.
 std::vector<double> hidden_shares(std::span<const Box3d> boxes);
 
-/// True if the whole box lies in a sector about straight ahead.
-/// @param field_of_view_rad  the sector's full angle; 2 pi and more: everything does
-bool in_field_of_view(const Box3d& box, double field_of_view_rad);
+/// Least angle between a box's corners and the border of a sector about straight ahead; negative when the box
+/// is not wholly inside.
+/// @param field_of_view_rad  the sector's full angle; 2 pi and more: there is no border, the margin is pi
+double field_of_view_margin_rad(const Box3d& box, double field_of_view_rad);
 
 }  // namespace mlo
