@@ -38,8 +38,9 @@ TEST(Visibility, NothingAndOneBox) {
 }
 
 TEST(Visibility, TheMarginIsThatOfTheOutermostCorner) {
-  // Corners of a car at 20 m, lengthwise: the near ones stand at 18 m, 1 m aside.
-  const double corner_rad = std::atan2(1.0, 18.0);
+  const Box3d ahead = car_box(20.0, 0.0);
+  const Eigen::Vector3d half = 0.5 * ahead.size_lwh_m;
+  const double corner_rad = std::atan2(half.y(), 20.0 - half.x());
   EXPECT_NEAR(field_of_view_margin_rad(car_box(20.0, 0.0), 80.0 * kDegree), 40.0 * kDegree - corner_rad,
               0.01);
   const double left = field_of_view_margin_rad(car_box(20.0, 5.0), 80.0 * kDegree);
