@@ -120,7 +120,7 @@ TrackingScores score(const std::string& object_class, bool with_poses) {
   return evaluate_tracking(sequences, {.object_class = object_class}).all;
 }
 
-// Ten sequences, on line. The bounds are a little below what docs/tracking.md reports.
+// Ten sequences, on line. The bounds are a little below what docs/results.md reports.
 TEST(TrackDetections, RealCarsWithPoses) {
   if (!test::real_data()) GTEST_SKIP() << test::kNoRealData;
   const TrackingScores scores = score("car", true);

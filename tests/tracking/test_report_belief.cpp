@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "mlo/tracking/report_belief.hpp"
@@ -35,12 +37,15 @@ TEST(ReportBelief, MarginAndUncertaintyCountUpToABound) {
   EXPECT_DOUBLE_EQ(report_belief({.sd_m = 100.0}, kWeights), report_belief({.sd_m = 3.0}, kWeights));
 }
 
-TEST(ReportBelief, OnlyCarsAreTooWide) {
-  EXPECT_NEAR(excess_width_m(ObjectClass::car, 2.63), 1.0, 1e-12);
-  EXPECT_LT(excess_width_m(ObjectClass::car, 1.5), 0.0);
-  for (const ObjectClass other : {ObjectClass::van, ObjectClass::truck, ObjectClass::pedestrian}) {
-    EXPECT_EQ(excess_width_m(other, 2.63), 0.0) << to_string(other);
-  }
+TEST(ReportBelief, TheUsualWidthIsLearnt) {
+  UsualCarWidth usual;
+  const double first_m = usual.mean_m();
+  for (int i = 0; i < 50; ++i) usual.add(first_m + 0.4);
+  EXPECT_NEAR(usual.mean_m(), first_m + 0.2, 1e-12);
+  for (int i = 0; i < 10000; ++i) usual.add(1.9);
+  EXPECT_NEAR(usual.mean_m(), 1.9, 0.01);
+  for (const double absurd : {0.0, -1.0, 1e6, std::numeric_limits<double>::quiet_NaN()}) usual.add(absurd);
+  EXPECT_NEAR(usual.mean_m(), 1.9, 0.01);
 }
 
 TEST(ReportBelief, EachClassHasItsWeights) {

@@ -110,6 +110,24 @@ TEST(Tracker, WeakDetectionsAloneAreNeverReported) {
   }
 }
 
+TEST(Tracker, CarsMayBeWiderThanThoseOfAnotherDetector) {
+  Detection wide = car(10.0, 0.0);
+  wide.box.size_lwh_m.y() = 2.1;
+  Tracker tracker({});
+  std::vector<TrackedObject> objects;
+  for (int i = 0; i < 200; ++i) objects = tracker.process({{wide, car(20.0, 8.0)}}, SE3(), kDt_s);
+  ASSERT_EQ(objects.size(), 2U);
+  const double apart = objects[1].belief - objects[0].belief;
+  wide.box.size_lwh_m.y() = 1.6;
+  Tracker narrow({});
+  for (int i = 0; i < 200; ++i) objects = narrow.process({{wide, car(20.0, 8.0)}}, SE3(), kDt_s);
+  EXPECT_GT(apart, objects[1].belief - objects[0].belief) << "it is still the less likely car of the two";
+  Tracker all_wide({});
+  wide.box.size_lwh_m.y() = 2.1;
+  for (int i = 0; i < 200; ++i) objects = all_wide.process({{wide}}, SE3(), kDt_s);
+  EXPECT_TRUE(objects.at(0).reported);
+}
+
 TEST(Tracker, TwoIdenticalBoxesAreOneReportedObject) {
   Tracker tracker({});
   std::set<long> reported;

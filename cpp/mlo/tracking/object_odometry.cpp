@@ -1,5 +1,6 @@
 #include "mlo/tracking/object_odometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -114,7 +115,9 @@ PoseEstimate ObjectOdometry::update(const ObjectSighting& sighting, const Object
 
 void ObjectOdometry::move_on(const SE3& body_fixed, double moving_probability, const SgfConfig& config) {
   moved_map_m_ = T_map_object_.rotation() * body_fixed.translation();
-  const double counts = moving_probability + (1.0 - moving_probability) * config.standing_gain;
+  // As long as it may as well move as stand, all of it counts.
+  const double stands = std::max(0.0, 1.0 - 2.0 * moving_probability);
+  const double counts = 1.0 - stands * (1.0 - config.standing_gain);
   T_map_object_ = T_map_object_ * interpolate(body_fixed, counts);
 }
 

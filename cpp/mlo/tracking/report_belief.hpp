@@ -15,7 +15,7 @@ struct BeliefCues {
   double detectability = 1.0;  ///< at its range (lifecycle.hpp)
   double margin_deg = 180.0;   ///< from the border of the field of view; negative: partly outside
   double sd_m = 0.0;           ///< of a predicted position; 0 with detection
-  double wider_m = 0.0;        ///< than usual for its class
+  double wider_m = 0.0;        ///< than usual, of a car; 0 for other classes
 };
 
 /// Log-odds that a track's box is that of an object.
@@ -33,11 +33,20 @@ constexpr const BeliefWeights& weights_for(ObjectClass object_class, const Repor
   return object_class == ObjectClass::cyclist ? config.cyclist : config.vehicle;
 }
 
-/// How much wider than usual (the mean width of KITTI's cars) a box is that is said to be a car; 0 for other
-/// classes. [m]
-constexpr double excess_width_m(ObjectClass object_class, double width_m) {
-  constexpr double kCarWidth_m = 1.63;
-  return object_class == ObjectClass::car ? width_m - kCarWidth_m : 0.0;
-}
+/// Usual width of a detector's cars, the mean over those that it saw surely; at first that of KITTI's. Widths
+/// that no car has are left out.
+class UsualCarWidth {
+ public:
+  constexpr void add(double width_m) {
+    if (!(width_m > 1.0 && width_m < 3.0)) return;
+    sum_m_ += width_m;
+    count_ += 1.0;
+  }
+  constexpr double mean_m() const { return sum_m_ / count_; }
+
+ private:
+  double count_ = 50.0;  // what the first value is worth
+  double sum_m_ = 50.0 * 1.63;
+};
 
 }  // namespace mlo

@@ -6,7 +6,6 @@
 
 #include "mlo/core/parallel.hpp"
 #include "mlo/tracking/ego_from_boxes.hpp"
-#include "mlo/tracking/report_belief.hpp"
 #include "mlo/tracking/visibility.hpp"
 
 namespace mlo {
@@ -147,6 +146,7 @@ void Tracker::commit(std::vector<Observation> observations) {
     ++track.age;
     ++track.misses;
   }
+  learn_usual_width(observations);
   associate_and_update(observations, true);
   associate_and_update(observations, false);
   miss_unmatched();
@@ -189,18 +189,26 @@ void Tracker::associate_and_update(std::vector<Observation>& observations, bool 
   }
 }
 
+void Tracker::learn_usual_width(std::span<const Observation> observations) {
+  for (const Observation& o : observations) {
+    const bool sure = o.logit >= config_.association.high_confidence_logit;
+    if (sure && o.object_class == ObjectClass::car) usual_width_.add(o.measurement.box.size_lwh_m.y());
+  }
+}
+
 void Tracker::judge(Track& track) const {
   const PlacedBox placed = track.filter.box();
   const Box3d box = in_lidar(placed, T_map_lidar_);
   const double margin_rad = field_of_view_margin_rad(box, field_of_view_rad(config_.lifecycle));
   const double sd_m = std::sqrt(track.filter.planar_covariance().topLeftCorner<2, 2>().trace());
+  const bool is_car = track.object_class == ObjectClass::car;
   track.belief = report_belief({.existence = track.existence,
                                 .best_logit = track.best_logit,
                                 .logit = track.logit,
                                 .detectability = detectability(box.center_lidar_m.norm(), config_.lifecycle),
                                 .margin_deg = margin_rad * 180.0 / std::numbers::pi,
                                 .sd_m = track.detection ? 0.0 : sd_m,
-                                .wider_m = excess_width_m(track.object_class, placed.size_lwh_m.y())},
+                                .wider_m = is_car ? placed.size_lwh_m.y() - usual_width_.mean_m() : 0.0},
                                weights_for(track.object_class, config_.report));
   track.state =
       next_state(track.state, {track.existence, track.belief >= 0.0, track.misses}, config_.lifecycle);

@@ -16,6 +16,7 @@
 #include "mlo/tracking/object_filter.hpp"
 #include "mlo/tracking/object_odometry.hpp"
 #include "mlo/tracking/placed_box.hpp"
+#include "mlo/tracking/report_belief.hpp"
 
 namespace mlo {
 
@@ -106,6 +107,7 @@ class Tracker {
   void commit(std::vector<Observation> observations);
   void update_odometry(Track& track, const ObjectPoints& object, double dt_s, const SweepTiming& timing);
   std::vector<TrackedObject> describe_all() const;
+  void learn_usual_width(std::span<const Observation> observations);
   void judge(Track& track) const;
   void associate_and_update(std::vector<Observation>& observations, bool high_confidence);
   void miss_unmatched();
@@ -115,6 +117,7 @@ class Tracker {
 
   TrackingConfig config_;
   std::vector<Track> tracks_;
+  UsualCarWidth usual_width_;
   SE3 T_map_lidar_;
   SE3 last_increment_;
   bool started_ = false;
