@@ -125,15 +125,15 @@ TEST(TrackDetections, RealCarsWithPoses) {
   if (!test::real_data()) GTEST_SKIP() << test::kNoRealData;
   const TrackingScores scores = score("car", true);
   EXPECT_GT(scores.hota.hota(), 0.785);
-  EXPECT_GT(scores.clear.mota(), 0.868);
+  EXPECT_GT(scores.clear.mota(), 0.864);
   EXPECT_LT(scores.clear.id_switches, 45U);
 }
 
 TEST(TrackDetections, RealCarsWithoutPoses) {
   if (!test::real_data()) GTEST_SKIP() << test::kNoRealData;
   const TrackingScores scores = score("car", false);
-  EXPECT_GT(scores.hota.hota(), 0.773);
-  EXPECT_GT(scores.clear.mota(), 0.857);
+  EXPECT_GT(scores.hota.hota(), 0.770);
+  EXPECT_GT(scores.clear.mota(), 0.853);
 }
 
 }  // namespace
