@@ -39,13 +39,12 @@ TEST(ReportBelief, MarginAndUncertaintyCountUpToABound) {
 
 TEST(ReportBelief, TheUsualWidthIsLearnt) {
   UsualCarWidth usual;
-  const double first_m = usual.mean_m();
-  for (int i = 0; i < 50; ++i) usual.add(first_m + 0.4);
-  EXPECT_NEAR(usual.mean_m(), first_m + 0.2, 1e-12);
-  for (int i = 0; i < 10000; ++i) usual.add(1.9);
-  EXPECT_NEAR(usual.mean_m(), 1.9, 0.01);
+  for (int i = 0; i < 19; ++i) usual.add(1.9);
+  EXPECT_EQ(usual.excess_m(2.5), 0.0) << "too few to tell";
+  usual.add(1.9);
+  EXPECT_NEAR(usual.excess_m(2.5), 0.6, 1e-12);
   for (const double absurd : {0.0, -1.0, 1e6, std::numeric_limits<double>::quiet_NaN()}) usual.add(absurd);
-  EXPECT_NEAR(usual.mean_m(), 1.9, 0.01);
+  EXPECT_NEAR(usual.excess_m(1.7), -0.2, 1e-12);
 }
 
 TEST(ReportBelief, EachClassHasItsWeights) {

@@ -33,20 +33,24 @@ constexpr const BeliefWeights& weights_for(ObjectClass object_class, const Repor
   return object_class == ObjectClass::cyclist ? config.cyclist : config.vehicle;
 }
 
-/// Usual width of a detector's cars, the mean over those that it saw surely; at first that of KITTI's. Widths
-/// that no car has are left out.
+/// Usual width of a detector's cars: the mean over those that it saw surely. Widths that no car has are left
+/// out.
 class UsualCarWidth {
  public:
   constexpr void add(double width_m) {
     if (!(width_m > 1.0 && width_m < 3.0)) return;
     sum_m_ += width_m;
-    count_ += 1.0;
+    ++count_;
   }
-  constexpr double mean_m() const { return sum_m_ / count_; }
+  /// How much wider a car is; 0 as long as too few were seen to tell.
+  constexpr double excess_m(double width_m) const {
+    constexpr int kEnough = 20;
+    return count_ < kEnough ? 0.0 : width_m - sum_m_ / count_;
+  }
 
  private:
-  double count_ = 50.0;  // what the first value is worth
-  double sum_m_ = 50.0 * 1.63;
+  int count_ = 0;
+  double sum_m_ = 0.0;
 };
 
 }  // namespace mlo

@@ -208,7 +208,7 @@ void Tracker::judge(Track& track) const {
                                 .detectability = detectability(box.center_lidar_m.norm(), config_.lifecycle),
                                 .margin_deg = margin_rad * 180.0 / std::numbers::pi,
                                 .sd_m = track.detection ? 0.0 : sd_m,
-                                .wider_m = is_car ? placed.size_lwh_m.y() - usual_width_.mean_m() : 0.0},
+                                .wider_m = is_car ? usual_width_.excess_m(placed.size_lwh_m.y()) : 0.0},
                                weights_for(track.object_class, config_.report));
   track.state =
       next_state(track.state, {track.existence, track.belief >= 0.0, track.misses}, config_.lifecycle);
