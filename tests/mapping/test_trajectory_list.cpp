@@ -33,7 +33,6 @@ SE3 car_at(double x_m) {
 ObjectSight sight_at(double x_m, double moving_probability, std::uint64_t seed) {
   return {.id = 7,
           .T_map_object = car_at(x_m),
-          .size_lwh_m = kSize,
           .moving_probability = moving_probability,
           .points_map = car_points(car_at(x_m), seed)};
 }

@@ -48,6 +48,25 @@ void accumulate(const ShapeMatch& match, const Eigen::Vector3d& p_map, const Eig
   ++sums.count;
 }
 
+// Of every stride-th point, moved.
+PlanarSums linearize(std::span<const Eigen::Vector3f> points_map, std::size_t stride,
+                     const Eigen::Vector3d& motion, const LocalMap& at_rest, const DynamicCheckConfig& config,
+                     const RefinementConfig& shapes) {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& p : points_map) center += p.cast<double>();
+  center /= static_cast<double>(points_map.size());
+  const Eigen::Matrix3d R = so3_exp({0.0, 0.0, motion.z()}).toRotationMatrix();
+  PlanarSums sums;
+  for (std::size_t k = 0; k < points_map.size(); k += stride) {
+    const Eigen::Vector3d arm = R * (points_map[k].cast<double>() - center);
+    const Eigen::Vector3d moved = center + arm + Eigen::Vector3d(motion.x(), motion.y(), 0.0);
+    const NearestPoints near =
+        at_rest.nearest(moved.cast<float>(), shapes.neighbours, static_cast<float>(config.gate_m));
+    accumulate(describe(near, ExpectedShape::plane, shapes), moved, arm.head<2>(), config, sums);
+  }
+  return sums;
+}
+
 }  // namespace
 
 void ObjectMap::insert(std::span<const Eigen::Vector3f> points_map, const SE3& T_map_object, double voxel_m) {
@@ -79,10 +98,6 @@ Displacement measure_displacement(std::span<const Eigen::Vector3f> points_map, c
   if (points_map.empty()) return result;
   const std::size_t stride = 1 + points_map.size() / kMaxPoints;
   const std::size_t num_points = (points_map.size() + stride - 1) / stride;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : points_map) center += p.cast<double>();
-  center /= static_cast<double>(points_map.size());
-
   const Eigen::Vector3d prior =
       Eigen::Vector3d(config.prior_shift_sd_m, config.prior_shift_sd_m, config.prior_turn_sd_rad)
           .cwiseAbs2()
@@ -91,15 +106,7 @@ Displacement measure_displacement(std::span<const Eigen::Vector3f> points_map, c
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();
   PlanarSums sums;
   for (int i = 0; i < config.iterations; ++i) {
-    sums = {};
-    const Eigen::Matrix3d R = so3_exp({0.0, 0.0, motion.z()}).toRotationMatrix();
-    for (std::size_t k = 0; k < points_map.size(); k += stride) {
-      const Eigen::Vector3d arm = R * (points_map[k].cast<double>() - center);
-      const Eigen::Vector3d moved = center + arm + Eigen::Vector3d(motion.x(), motion.y(), 0.0);
-      const NearestPoints near =
-          at_rest.nearest(moved.cast<float>(), shapes.neighbours, static_cast<float>(config.gate_m));
-      accumulate(describe(near, ExpectedShape::plane, shapes), moved, arm.head<2>(), config, sums);
-    }
+    sums = linearize(points_map, stride, motion, at_rest, config, shapes);
     if (sums.count < config.min_points) return result;
     result.fit_after = static_cast<double>(sums.close) / static_cast<double>(num_points);
     if (i == 0) result.fit_before = result.fit_after;

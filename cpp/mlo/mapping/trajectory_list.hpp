@@ -20,7 +20,6 @@ namespace mlo {
 struct ObjectSight {
   long id = 0;
   SE3 T_map_object;
-  Eigen::Vector3d size_lwh_m = Eigen::Vector3d::Zero();
   double moving_probability = 0.5;               ///< by its speed
   std::vector<Eigen::Vector3f> points_map = {};  ///< of this scan, map frame [m]; empty when it was not seen
 };

@@ -294,7 +294,6 @@ void Pipeline::find_moving(const Percept& seen, const SweepMotion& motion, const
   for (const TrackedObject& object : objects) {
     ObjectSight sight{.id = object.id,
                       .T_map_object = object.T_map_object,
-                      .size_lwh_m = object.box.size_lwh_m,
                       .moving_probability = object.moving_probability};
     if (object.detection) {
       for (const Point& point : seen.objects[*object.detection].points) {
