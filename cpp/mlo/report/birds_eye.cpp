@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "mlo/core/bytes.hpp"
 #include "mlo/report/png.hpp"
 
 namespace mlo {
