@@ -16,6 +16,8 @@ void add_simulate(CLI::App& program);  // only where the simulator is built
 void add_info(CLI::App& program);
 void add_truth(CLI::App& program);
 void add_report(CLI::App& program);
+void add_export(CLI::App& program);
+void add_scene(CLI::App& program);
 void add_reproduce(CLI::App& program);
 
 }  // namespace mlo::apps

@@ -1,3 +1,4 @@
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -96,6 +97,8 @@ int run(int argc, char** argv) {
   mlo::apps::add_info(program);
   mlo::apps::add_truth(program);
   mlo::apps::add_report(program);
+  mlo::apps::add_scene(program);
+  mlo::apps::add_export(program);
   mlo::apps::add_reproduce(program);
 #ifdef MLO_WITH_SIMULATOR
   mlo::apps::add_simulate(program);
@@ -121,6 +124,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   keep_freed_memory();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error that is told, not the end
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

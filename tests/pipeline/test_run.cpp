@@ -13,6 +13,7 @@
 #include "mlo/core/error.hpp"
 #include "mlo/io/trajectory_file.hpp"
 #include "mlo/pipeline/run.hpp"
+#include "mlo/scene/scene_file.hpp"
 #include "pipeline/street.hpp"
 #include "temp_folder.hpp"
 
@@ -173,6 +174,22 @@ TEST_F(BadSequence, ReportIsJsonWithTheSameNumbers) {
 TEST_F(BadSequence, ConfigurationReadsBackTheSame) {
   const PipelineConfig config = resolve({.file = out() / "config.yaml"});
   EXPECT_EQ(to_yaml(config), to_yaml(small_config()));
+}
+
+TEST_F(BadSequence, SceneHasEveryFrameAndTheMap) {
+  const SceneFile scene(out() / "scene.mlo");
+  EXPECT_TRUE(scene.complete());
+  ASSERT_EQ(scene.num_scans(), kScans);
+  const PoseList poses = read_trajectory(out() / "trajectory.txt");
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const SceneScan scan = scene.scan(i);
+    EXPECT_EQ(scan.frame, i);
+    EXPECT_NEAR(scan.stamp_s, 0.1 * static_cast<double>(i), 1e-6);
+    EXPECT_EQ(scan.status == ScanStatus::skipped, !scan.problem.empty());
+    EXPECT_TRUE(scan.T_map_lidar.matrix().isApprox(poses.T_world_body[i].matrix(), 1e-6));
+  }
+  EXPECT_EQ(scene.scan(kMissing).status, ScanStatus::skipped);
+  EXPECT_EQ(scene.map().size(), summary_.map_points);
 }
 
 TEST(Run, InterruptedKeepsWhatWasDone) {

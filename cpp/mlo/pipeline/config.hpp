@@ -10,6 +10,7 @@
 #include "mlo/mapping/config.hpp"
 #include "mlo/odometry/config.hpp"
 #include "mlo/perception/config.hpp"
+#include "mlo/scene/config.hpp"
 #include "mlo/tracking/config.hpp"
 
 namespace mlo {
@@ -61,6 +62,7 @@ struct PipelineConfig {
   OdometryConfig odometry;
   MappingConfig mapping;
   TrackingConfig tracking;
+  SceneConfig scene;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -72,6 +74,7 @@ struct PipelineConfig {
     visit.group("odometry", odometry, "Scan-to-scan ego odometry (paper, section III-C-1).");
     visit.group("mapping", mapping, "Map refinement and the static map (paper, section III-D).");
     visit.group("tracking", tracking, "Multi-object tracking (paper, section III-C-2).");
+    visit.group("scene", scene, "The 4D file that a run writes (docs/scene_format.md).");
   }
 };
 

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "mlo/core/ego_motion.hpp"
+#include "mlo/core/features.hpp"
 #include "mlo/core/se3.hpp"
+#include "mlo/core/sweep_motion.hpp"
 #include "mlo/mapping/trajectory_list.hpp"
 #include "mlo/odometry/consistency_check.hpp"
 #include "mlo/tracking/tracker.hpp"
@@ -73,6 +75,9 @@ struct FrameResult {
   ConsistencyReport consistency;
   std::vector<TrackedObject> objects;  ///< all tracks that live, in the map frame; none without detections
   std::vector<MappedObject> finished_objects;  ///< maps of those that are no longer followed
+  Percept percept;                             ///< what was seen, as measured
+  SweepMotion motion = SweepMotion::none();    ///< brings its points to the reference time
+  SE3 T_reference_stamp;                       ///< the lidar at the stamp, in its frame at the reference time
   PerceptCounts counts;
   StageTimes times;
 

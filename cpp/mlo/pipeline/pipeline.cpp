@@ -119,7 +119,7 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
       times, Stage::perception, [&] { return segment_ground(prepared.points, config_.perception.ground); });
   FoundObjects found;
   if (!given) found = timed(times, Stage::detection, [&] { return find_objects(prepared, ground); });
-  const Percept seen = timed(times, Stage::perception, [&] {
+  Percept seen = timed(times, Stage::perception, [&] {
     return perceive(prepared, ground, given.value_or(found.objects), config_.perception);
   });
   result.counts = count(prepared, seen);
@@ -148,6 +148,7 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
   });
   timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, T_map_lidar, sweep, result); });
   state_.likely_objects = std::move(found.likely);
+  result.percept = std::move(seen);
   return result;
 }
 
@@ -347,9 +348,10 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
         if (result.localised()) update_static_map(scan, seen, motion, T_map_lidar, result.objects);
       });
 
-  const SE3 T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);
-  result.T_odom_lidar = next.T_odom_lidar * T_reference_stamp;
-  result.T_map_lidar = next.T_map_lidar * T_reference_stamp;
+  result.motion = motion;
+  result.T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);
+  result.T_odom_lidar = next.T_odom_lidar * result.T_reference_stamp;
+  result.T_map_lidar = next.T_map_lidar * result.T_reference_stamp;
   state_ = std::move(next);
 }
 

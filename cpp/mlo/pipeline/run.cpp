@@ -80,9 +80,17 @@ std::string boxes_from(bool given, Detector detector) {
   return "none";
 }
 
-void skip(std::size_t frame, const std::string& problem, double sweeps_ahead, const Pipeline& pipeline,
+/// The last scan that was processed, and how many were skipped since.
+struct Progress {
+  double stamp_s = 0.0;
+  double duration_s = 0.0;
+  double skipped_since = 0.0;
+};
+
+void skip(std::size_t frame, const std::string& problem, const Progress& progress, const Pipeline& pipeline,
           RunOutput& output, RunSummary& summary) {
-  output.write_skipped(frame, problem, pipeline.predict_poses(sweeps_ahead));
+  const double stamp_s = progress.stamp_s + progress.skipped_since * progress.duration_s;
+  output.write_skipped(frame, stamp_s, problem, pipeline.predict_poses(progress.skipped_since));
   ++summary.skipped;
   if (summary.skipped <= kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("scan {} was skipped: {}", frame, problem));
@@ -90,11 +98,12 @@ void skip(std::size_t frame, const std::string& problem, double sweeps_ahead, co
 }
 
 // What is written once, at the end.
-void finish(const Pipeline& pipeline, const RunOutput& output, RunSummary& summary) {
+void finish(const Pipeline& pipeline, RunOutput& output, RunSummary& summary) {
   const std::vector<MapPoint> map = pipeline.static_map().points();
   output.write_map(map);
   output.write_object_trajectories();
   output.write_object_maps(pipeline.object_maps());
+  output.finish();
   summary.map_points = map.size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
@@ -116,11 +125,11 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
 
   summary.boxes_from = boxes_from(detections.has_value(), config.detection.detector);
   const bool with_objects = detections || config.detection.detector != Detector::none;
-  RunOutput output(options.out, dataset.calibration.T_camera0_lidar, with_objects);
+  RunOutput output(options.out, dataset, config, with_objects);
   write_file_atomically(options.out / "config.yaml", to_yaml(config));
   Pipeline pipeline(config);
   std::optional<Eigen::Vector3d> last_position;
-  double skipped_in_a_row = 0.0;
+  Progress progress;
   std::size_t next_checkpoint = options.checkpoint_scans;
   std::string first_problem;
   const auto read = [&](std::size_t i) {
@@ -137,13 +146,14 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
     summary.invalid_points += reading.invalid_points;
     if (!reading.scan) {
       if (first_problem.empty()) first_problem = reading.problem;
-      skip(dataset.scans->frame(indices[i]), reading.problem, ++skipped_in_a_row, pipeline, output, summary);
+      ++progress.skipped_since;
+      skip(dataset.scans->frame(indices[i]), reading.problem, progress, pipeline, output, summary);
     } else {
-      skipped_in_a_row = 0.0;
-      const FrameResult result = process(*reading.scan, detections, pipeline);
-      output.write(result);
+      progress = {.stamp_s = reading.scan->stamp_s, .duration_s = reading.scan->duration_s};
+      FrameResult result = process(*reading.scan, detections, pipeline);
       tally(result, summary);
-      const Eigen::Vector3d& position = result.T_map_lidar.translation();
+      const Eigen::Vector3d position = result.T_map_lidar.translation();
+      output.write(std::move(result));
       if (last_position) summary.path_m += (position - *last_position).norm();
       last_position = position;
     }

@@ -1,6 +1,7 @@
 #include "mlo/pipeline/run_output.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,15 @@ std::filesystem::path create_folder(const std::filesystem::path& folder) {
                                  folder.string(), error.message()));
   }
   return folder;
+}
+
+SceneMeta scene_meta(const Dataset& dataset, const PipelineConfig& config) {
+  return {.program_version = MLO_VERSION,
+          .input = dataset.root.string(),
+          .format = dataset.format,
+          .sequence = dataset.sequence,
+          .configuration = to_yaml(config),
+          .T_camera0_lidar = dataset.calibration.T_camera0_lidar};
 }
 
 std::string per_scan_row(const FrameResult& result) {
@@ -60,10 +70,10 @@ void RunOutput::TextFile::write_row(const std::string& row) {
   }
 }
 
-RunOutput::RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar,
-                     bool with_objects)
+RunOutput::RunOutput(const std::filesystem::path& folder, const Dataset& dataset,
+                     const PipelineConfig& config, bool with_objects)
     : folder_(create_folder(folder)),
-      T_camera_lidar_(T_camera_lidar),
+      T_camera_lidar_(dataset.calibration.T_camera0_lidar),
       trajectory_(folder / "trajectory.txt"),
       trajectory_tum_(folder / "trajectory_tum.txt"),
       odometry_(folder / "odometry.txt"),
@@ -72,6 +82,7 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const std::optional<SE
   std::string header(kPerScanHeader);
   for (const std::string_view stage : kStageNames) header += fmt::format(",{}_ms", stage);
   per_scan_.write_row(header + ",problem");
+  if (config.scene.write) scene_.emplace(folder / "scene.mlo", scene_meta(dataset, config), config.scene);
   if (!with_objects) return;
   objects_.emplace(folder / "objects.csv");
   objects_->write_row(object_table_header());
@@ -85,12 +96,14 @@ void RunOutput::write_poses(const SE3& T_map_lidar, const SE3& T_odom_lidar) {
   }
 }
 
-void RunOutput::write(const FrameResult& result) {
+void RunOutput::write(FrameResult result) {
+  if (scene_) scene_->wait();  // so that it is never more than one scan behind
   write_poses(result.T_map_lidar, result.T_odom_lidar);
   trajectory_tum_.write_row(tum_row(result.stamp_s, result.T_map_lidar));
   per_scan_.write_row(per_scan_row(result));
   if (objects_) write_objects(result);
   write_object_maps(result.finished_objects);
+  if (scene_) scene_->write(std::move(result));
 }
 
 void RunOutput::write_objects(const FrameResult& result) {
@@ -115,8 +128,9 @@ void RunOutput::write_object_trajectories() const {
   if (objects_) object_trajectories_.write(folder_ / "object_trajectories");
 }
 
-void RunOutput::write_skipped(std::size_t frame, const std::string& problem,
+void RunOutput::write_skipped(std::size_t frame, double stamp_s, const std::string& problem,
                               const PredictedPoses& predicted) {
+  if (scene_) scene_->write_skipped(frame, stamp_s, problem, predicted);
   write_poses(predicted.T_map_lidar, predicted.T_odom_lidar);
   std::string quoted;
   for (const char c : problem) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -125,9 +139,14 @@ void RunOutput::write_skipped(std::size_t frame, const std::string& problem,
   per_scan_.write_row(fmt::format("{},,skipped{}\"{}\"", frame, std::string(columns - 2, ','), quoted));
 }
 
-void RunOutput::write_map(std::span<const MapPoint> points) const {
+void RunOutput::write_map(std::span<const MapPoint> points) {
   write_ply(folder_ / "static_map.ply", points);
   write_pcd(folder_ / "static_map.pcd", points);
+  if (scene_) scene_->write_map(points);
+}
+
+void RunOutput::finish() {
+  if (scene_) scene_->finish();
 }
 
 }  // namespace mlo

@@ -7,8 +7,11 @@
 #include <string>
 
 #include "mlo/core/types.hpp"
+#include "mlo/io/dataset.hpp"
+#include "mlo/pipeline/config.hpp"
 #include "mlo/pipeline/frame_result.hpp"
 #include "mlo/pipeline/object_table.hpp"
+#include "mlo/pipeline/scene_output.hpp"
 
 namespace mlo {
 
@@ -16,17 +19,21 @@ namespace mlo {
 class RunOutput {
  public:
   /// Creates the folder and the files in it; files of an earlier run are replaced.
-  /// @param T_camera_lidar  where known, trajectory_camera.txt is written too
+  /// @param dataset       where it knows its camera, trajectory_camera.txt is written too
+  /// @param with_objects  objects.csv is written too
   /// @throws InputError when the folder or a file cannot be written
-  /// @param with_objects    objects.csv is written too
-  RunOutput(const std::filesystem::path& folder, const std::optional<SE3>& T_camera_lidar, bool with_objects);
+  RunOutput(const std::filesystem::path& folder, const Dataset& dataset, const PipelineConfig& config,
+            bool with_objects);
 
-  /// trajectory.txt, trajectory_tum.txt, odometry.txt, trajectory_camera.txt and a row of per_scan.csv.
+  /// trajectory.txt, trajectory_tum.txt, odometry.txt, trajectory_camera.txt, a row of per_scan.csv, and the
+  /// scene.
   /// @throws InputError when the disk is full
-  void write(const FrameResult& result);
+  void write(FrameResult result);
   /// For a scan that could not be used: a row of per_scan.csv with the problem, and the predicted poses in
-  /// the files whose row numbers are frame numbers (not in trajectory_tum.txt).
-  void write_skipped(std::size_t frame, const std::string& problem, const PredictedPoses& predicted);
+  /// the files whose row numbers are frame numbers (not in trajectory_tum.txt) and in the scene.
+  /// @param stamp_s  when the scan should have been taken
+  void write_skipped(std::size_t frame, double stamp_s, const std::string& problem,
+                     const PredictedPoses& predicted);
 
   /// object_maps/ID.ply, in the object's own frame, of those that were reported.
   void write_object_maps(std::span<const MappedObject> objects) const;
@@ -34,8 +41,11 @@ class RunOutput {
   /// object_trajectories/ID.txt, of all objects that were reported.
   void write_object_trajectories() const;
 
-  /// static_map.ply and static_map.pcd.
-  void write_map(std::span<const MapPoint> points) const;
+  /// static_map.ply and static_map.pcd, and the map of the scene.
+  void write_map(std::span<const MapPoint> points);
+
+  /// Ends the scene.
+  void finish();
 
  private:
   void write_objects(const FrameResult& result);
@@ -59,6 +69,7 @@ class RunOutput {
   std::optional<TextFile> trajectory_camera_;
   std::optional<TextFile> objects_;
   ObjectTrajectories object_trajectories_;
+  std::optional<SceneOutput> scene_;
 };
 
 }  // namespace mlo
