@@ -8,7 +8,7 @@ namespace mlo {
 struct SceneConfig {
   bool write = true;
   bool clouds = true;
-  double cloud_voxel_m = 0.2;
+  double cloud_voxel_m = 0.4;
   int compression_level = 1;
 
   template <class Visitor>
