@@ -1,4 +1,7 @@
+#include <vector>
+
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "mlo/io/dataset.hpp"
 #include "mlo/io/trajectory_file.hpp"
@@ -52,6 +55,31 @@ TEST(RealScans, RawScansAreFollowedWithTheWholeAndTheCamerasView) {
   const auto truth = *data / "truth_lidar" / "0009_vel.txt";
   EXPECT_LT(mean_step_error_m(folder, truth, RegionOfInterest::full), 0.025);
   EXPECT_LT(mean_step_error_m(folder, truth, RegionOfInterest::camera), 0.025);
+}
+
+std::vector<Eigen::Vector3d> positions(const Dataset& dataset) {
+  PipelineConfig config;
+  config.sensor = dataset.sensor;
+  Pipeline pipeline(config);
+  std::vector<Eigen::Vector3d> path;
+  for (std::size_t i = 0; i < kScans; ++i)
+    path.push_back(pipeline.process(*dataset.scans->read(i).scan, {}).T_map_lidar.translation());
+  return path;
+}
+
+// A turn with distorted scans: rounding that depends on the thread shows here, and not on short simulated
+// drives.
+TEST(RealScans, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto data = test::real_data();
+  if (!data) GTEST_SKIP() << test::kNoRealData;
+  const Dataset dataset = open_dataset(*data / "kitti_raw" / "2011_09_26" / "2011_09_26_drive_0005_sync", {});
+  std::vector<std::vector<Eigen::Vector3d>> paths;
+  for (const std::size_t threads : {1U, 2U, 2U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    paths.push_back(positions(dataset));
+  }
+  EXPECT_TRUE(paths[0] == paths[1]);
+  EXPECT_TRUE(paths[0] == paths[2]);
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
+#include <map>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
+#include "io/file_bytes.hpp"
 #include "mlo/evaluation/trajectory_error.hpp"
 #include "mlo/io/trajectory_file.hpp"
 #include "mlo/pipeline/run.hpp"
@@ -43,6 +47,8 @@ class ShortDrive : public testing::TestWithParam<Case> {
         read_detections({drive_.path() / "detections" / "noisy.csv"}, dataset.calibration);
     return run(dataset, boxes, config, {.out = results_.path()}, {}, {});
   }
+
+  std::string result(const std::string& file) const { return test::read_bytes(results_.path() / file); }
 
   TrajectoryErrors errors_of(const std::string& file) const {
     const PoseList truth = read_trajectory(drive_.path() / "truth" / "poses_stamp.txt");
@@ -106,6 +112,26 @@ TEST_P(BesideTheTrain, LeastSquaresNeedTheConsistencyCheck) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BesideTheTrain,
                          testing::Values(Case{SceneKind::train, 60.0, 90, 0.0, 0.0, 0.16}));
+
+class AnyNumberOfThreads : public ShortDrive {};
+
+TEST_P(AnyNumberOfThreads, TheSameBytes) {
+  const std::vector<std::string> files = {"trajectory.txt", "objects.csv", "static_map.ply", "scene.mlo"};
+  std::map<std::string, std::string> expected;
+  for (const std::size_t threads : {1U, 2U, 4U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    run_with({});
+    for (const std::string& file : files) {
+      const std::string bytes = result(file);
+      EXPECT_FALSE(bytes.empty()) << file;
+      EXPECT_TRUE(expected.try_emplace(file, bytes).first->second == bytes)
+          << file << ", " << threads << " threads";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AnyNumberOfThreads,
+                         testing::Values(Case{SceneKind::city, 15.0, 20, 0.0, 0.0, 0.0}));
 
 }  // namespace
 }  // namespace mlo

@@ -6,16 +6,31 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 namespace mlo {
+
+/// Calls body(arguments...), from one copy of its machine code. TBB's tasks inline their bodies in several
+/// places, and each copy may fuse other multiplications with additions and round differently: which copy runs
+/// depends on how many threads there are, so that the last bits of results would, too.
+template <class Body, class... Arguments>
+[[gnu::noipa]] void call_single_copy(const Body& body, Arguments... arguments) {
+  body(arguments...);
+}
 
 /// Runs body(i) for i in [0, count), on the caller's TBB arena. Results must be written by index.
 template <class Body>
 void parallel_for_each_index(std::size_t count, const Body& body, std::size_t grain = 1) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) call_single_copy(body, i);
                     });
+}
+
+/// Runs some functions side by side. They must not write to the same places.
+template <class... Bodies>
+void parallel_invoke(const Bodies&... bodies) {
+  tbb::parallel_invoke([&bodies] { call_single_copy(bodies); }...);
 }
 
 /// Sum over [0, count) whose value does not depend on the number of threads: blocks of fixed size are summed

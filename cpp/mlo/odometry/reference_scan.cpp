@@ -5,9 +5,9 @@
 #include <span>
 
 #include <nanoflann.hpp>
-#include <tbb/parallel_invoke.h>
 
 #include "mlo/core/kd_tree_points.hpp"
+#include "mlo/core/parallel.hpp"
 #include "mlo/odometry/thinning.hpp"
 
 namespace mlo {
@@ -148,7 +148,7 @@ std::vector<std::size_t> CandidateSet::nearest(const Eigen::Vector3d& p, std::si
 ReferenceScan make_reference_scan(const Percept& percept, const SweepMotion& motion,
                                   std::size_t max_candidates) {
   ReferenceScan reference;
-  tbb::parallel_invoke(
+  parallel_invoke(
       [&] {
         reference.ground = {percept.ground.candidates, motion, max_candidates};
       },

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_invoke.h>
-
+#include "mlo/core/parallel.hpp"
 #include "mlo/perception/features.hpp"
 #include "mlo/perception/fusion.hpp"
 #include "mlo/perception/ground.hpp"
@@ -56,17 +55,17 @@ Percept perceive(const Scan& scan, const GroundSegmentation& ground, std::span<c
   std::vector<std::uint16_t> object_ids;
   ScanLines lines;
   LineShape shape;
-  tbb::parallel_invoke([&] { object_ids = label_objects(points, detections, config.fusion.box_margin_m); },
-                       [&] {
-                         lines = group_lines(points);
-                         shape = measure_lines(points, lines);
-                       });
+  parallel_invoke([&] { object_ids = label_objects(points, detections, config.fusion.box_margin_m); },
+                  [&] {
+                    lines = group_lines(points);
+                    shape = measure_lines(points, lines);
+                  });
   const std::vector<PointKind> kinds = correct_mutually(ground.is_ground, object_ids);
   const SegmentedLines segments = segment_lines(lines, ground.is_ground, config.features.segments_per_line);
   const ChosenPoints chosen = choose_points(lines, shape, segments, kinds, config.features);
 
   Percept percept;
-  tbb::parallel_invoke(
+  parallel_invoke(
       [&] {
         percept.ground =
             gather_set(PointKind::ground, chosen.ground, {}, points, shape, kinds, config.features);

@@ -5,8 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/parallel_invoke.h>
-
+#include "mlo/core/parallel.hpp"
 #include "mlo/mapping/refinement.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
 #include "mlo/perception/perceive.hpp"
@@ -335,7 +334,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odomet
     clear_local_maps();
     next.scans_lost = 0;
   }
-  tbb::parallel_invoke(
+  parallel_invoke(
       [&] {
         if (!config_.odometry.enabled) return;
         const auto max_candidates = static_cast<std::size_t>(config_.odometry.max_candidates);
