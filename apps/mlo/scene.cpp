@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/mlo/commands.hpp"
+#include "mlo/core/heading.hpp"
 #include "mlo/scene/scene_state.hpp"
 #include "mlo/scene/scene_summary.hpp"
 
@@ -34,8 +35,7 @@ struct Options {
 };
 
 double yaw_deg(const SE3& pose) {
-  const Eigen::Vector3d ahead = pose.rotation() * Eigen::Vector3d::UnitX();
-  return std::atan2(ahead.y(), ahead.x()) * 180.0 / std::numbers::pi;
+  return yaw_of(pose) * 180.0 / std::numbers::pi;
 }
 
 void print_row(const char* name, const std::string& text) {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "mlo/core/log_odds.hpp"
 #include "mlo/detection/consistency.hpp"
-#include "mlo/detection/log_odds.hpp"
 
 namespace mlo {
 namespace {

@@ -3,7 +3,7 @@
 #include "detection/made_scan.hpp"
 #include "mlo/core/box_overlap.hpp"
 #include "mlo/detection/detect.hpp"
-#include "mlo/detection/log_odds.hpp"
+#include "mlo/core/log_odds.hpp"
 
 namespace mlo {
 namespace {

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "mlo/core/heading.hpp"
+
 namespace mlo {
 namespace {
 
@@ -54,8 +56,7 @@ bool Box3d::contains(const Eigen::Vector3d& p_lidar, double margin_m) const {
 }
 
 Box3d upright_box(const SE3& T_lidar_object, const Eigen::Vector3d& size_lwh_m) {
-  const Eigen::Vector3d heading = T_lidar_object.rotation() * Eigen::Vector3d::UnitX();
-  return {T_lidar_object.translation(), size_lwh_m, std::atan2(heading.y(), heading.x())};
+  return {T_lidar_object.translation(), size_lwh_m, yaw_of(T_lidar_object)};
 }
 
 }  // namespace mlo

@@ -1,6 +1,6 @@
 #include "mlo/detection/cluster_model.hpp"
 
-#include "mlo/detection/log_odds.hpp"
+#include "mlo/core/log_odds.hpp"
 
 namespace mlo {
 namespace {

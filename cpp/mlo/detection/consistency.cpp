@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "mlo/detection/log_odds.hpp"
+#include "mlo/core/log_odds.hpp"
 
 namespace mlo {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "mlo/core/log_odds.hpp"
 #include "mlo/detection/cluster_detector.hpp"
 #include "mlo/detection/consistency.hpp"
-#include "mlo/detection/log_odds.hpp"
 
 namespace mlo {
 namespace {

@@ -9,11 +9,6 @@
 #include "mlo/io/file_errors.hpp"
 
 namespace mlo {
-namespace {
-
-constexpr mode_t kReadableByAll = 0666;  // the process's umask takes away what it wants
-
-}  // namespace
 
 AppendFile::AppendFile(std::filesystem::path path) : path_(std::move(path)) {
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadableByAll);

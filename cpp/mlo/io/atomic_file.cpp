@@ -13,8 +13,7 @@ namespace mlo {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr mode_t kReadableByAll = 0666;  // the process's umask takes away what it wants
-constexpr int kMaxNames = 100;           // of temporary files left behind by crashes
+constexpr int kMaxNames = 100;  // of temporary files left behind by crashes
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
+#include "mlo/core/log_odds.hpp"
 #include "mlo/io/detection_formats.hpp"
 #include "mlo/io/text.hpp"
 
@@ -131,7 +132,7 @@ void set_confidences(Source& source, ScoreKind kind) {
   const bool logits = kind == ScoreKind::logit || (kind == ScoreKind::automatic && !all_confidences);
   for (ParsedDetection& parsed : source.detections) {
     const double score = parsed.record.raw_score;
-    parsed.record.detection.confidence = logits ? 1.0 / (1.0 + std::exp(-score)) : score;
+    parsed.record.detection.confidence = logits ? probability(score) : score;
   }
 }
 

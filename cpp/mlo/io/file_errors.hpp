@@ -3,8 +3,13 @@
 #include <filesystem>
 #include <string_view>
 
+#include <sys/types.h>
+
 // What the classes that write files have in common. Internal to io.
 namespace mlo {
+
+/// Permissions of new files; the process's umask takes away what it wants.
+constexpr mode_t kReadableByAll = 0666;
 
 /// @param error  errno
 /// @throws InputError with the file, what the system says and a remedy; always

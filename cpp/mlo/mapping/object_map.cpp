@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "mlo/core/robust_kernel.hpp"
 #include "mlo/mapping/neighbourhood.hpp"
 
 namespace mlo {
@@ -32,8 +33,7 @@ void accumulate(const ShapeMatch& match, const Eigen::Vector3d& p_map, const Eig
   const double d2 = match.squared_distance_m2(p_map);
   if (d2 > config.gate_m * config.gate_m) return;
   if (d2 < kClose * kClose * config.point_sd_m * config.point_sd_m) ++sums.close;
-  const double kernel2 = config.kernel_m * config.kernel_m;
-  const double robust = std::pow(kernel2 / (kernel2 + d2), 2);
+  const double robust = geman_mcclure_weight(d2, config.kernel_m);
   const Eigen::Vector3d d = p_map - match.q_map.cast<double>();
   for (int i = 0; i < match.num_directions; ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mlo/core/parallel.hpp"
+#include "mlo/core/robust_kernel.hpp"
 
 namespace mlo {
 namespace {
@@ -41,13 +42,6 @@ std::vector<Source> collect(std::span<const RefinementTerm> terms) {
   return sources;
 }
 
-// Geman-McClure weight of a squared distance.
-double robust_weight(double squared_distance_m2, double kernel_m) {
-  const double k2 = kernel_m * kernel_m;
-  const double ratio = k2 / (k2 + squared_distance_m2);
-  return ratio * ratio;
-}
-
 void match(Source& source, const SE3& T_map_lidar, double gate_m, const RefinementConfig& config) {
   const Eigen::Vector3f query = (T_map_lidar * source.p_lidar).cast<float>();
   const auto rematch = static_cast<float>(config.rematch_distance_m);
@@ -66,7 +60,7 @@ void accumulate(const Source& source, const SE3& T_map_lidar, double gate_m, dou
   const Eigen::Vector3d p_map = arm + T_map_lidar.translation();
   const double d2 = source.match.squared_distance_m2(p_map);
   if (!(d2 <= gate_m * gate_m)) return;
-  const double robust = robust_weight(d2, kernel_m);
+  const double robust = geman_mcclure_weight(d2, kernel_m);
   const Eigen::Vector3d d = p_map - source.match.q_map.cast<double>();
   for (int i = 0; i < source.match.num_directions; ++i) {
     const auto k = static_cast<std::size_t>(i);

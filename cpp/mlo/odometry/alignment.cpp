@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "mlo/core/parallel.hpp"
+#include "mlo/core/robust_kernel.hpp"
 
 namespace mlo {
 namespace {
@@ -62,7 +63,7 @@ class Aligner {
       return parallel_sum<NormalEquations>(kind.size(), [&](NormalEquations& sums, std::size_t i) {
         const FeaturePoint& feature = features[kind[i].feature];
         const auto residual = residual_of(placement(feature), kind[i].shape);
-        const double weight = kernel_weight(residual.value.squaredNorm());
+        const double weight = geman_mcclure_weight(residual.value.squaredNorm(), config_.kernel_m);
         const double gain = placement.gain(feature);
         for (Eigen::Index row = 0; row < residual.value.size(); ++row)
           sums.add(residual.value(row), gain * residual.jacobian.row(row).transpose(), weight);
@@ -72,13 +73,6 @@ class Aligner {
     sums += sum(matches.edge, features_.edge, point_to_line);
     sums += sum(matches.surface, features_.surface, point_to_plane);
     return sums;
-  }
-
-  // Weight of iteratively reweighted least squares.
-  double kernel_weight(double squared) const {
-    const double kernel_squared = config_.kernel_m * config_.kernel_m;
-    const double root = kernel_squared / (kernel_squared + squared);
-    return root * root;
   }
 
   const EgoFeatures& features_;

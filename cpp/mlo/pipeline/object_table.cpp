@@ -1,9 +1,8 @@
 #include "mlo/pipeline/object_table.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
+#include "mlo/core/heading.hpp"
 #include "mlo/io/object_file.hpp"
 #include "mlo/io/trajectory_file.hpp"
 
@@ -26,14 +25,13 @@ std::string object_table_row(const ObjectRow& place, const TrackedObject& object
                         .T_map_object = object.T_map_object,
                         .size_lwh_m = object.box.size_lwh_m,
                         .points = object.num_points};
-  const Eigen::Vector3d heading = object.T_map_object.rotation() * Eigen::Vector3d::UnitX();
   const Eigen::Vector4d sd = object.planar_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::Vector2d yaw_sd = object.yaw_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Box3d& box = object.box;
   return objects_csv_row(pose) +
          fmt::format(",{},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f}", to_string(object.state),
-                     std::atan2(heading.y(), heading.x()), object.velocity_map_mps.x(),
-                     object.velocity_map_mps.y(), object.turn_rate_radps, object.moving_probability) +
+                     yaw_of(object.T_map_object), object.velocity_map_mps.x(), object.velocity_map_mps.y(),
+                     object.turn_rate_radps, object.moving_probability) +
          fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f}", sd(0), sd(1), sd(2), sd(3), yaw_sd(0),
                      yaw_sd(1)) +
          fmt::format(",{:.4f},{:.4f},{:.4f},{:.5f},{:.2f},{},{},{}", box.center_lidar_m.x(),

@@ -53,14 +53,18 @@ std::vector<Box3d> boxes_of_moving(std::span<const TrackedObject> objects) {
   return boxes;
 }
 
-// Points of features brought to the reference time and placed by a pose.
-void append_placed(std::span<const FeaturePoint> features, const SweepMotion& motion, const SE3& T_map_lidar,
-                   std::vector<Eigen::Vector3f>& points_map) {
-  for (const FeaturePoint& feature : features) {
+// Measured points brought to the reference time and placed by a pose.
+template <class MeasuredPoint>
+std::vector<Eigen::Vector3f> placed(const std::vector<MeasuredPoint>& points, const SweepMotion& motion,
+                                    const SE3& T_map_lidar) {
+  std::vector<Eigen::Vector3f> points_map;
+  points_map.reserve(points.size());
+  for (const MeasuredPoint& point : points) {
     const Eigen::Vector3d p_lidar =
-        motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
-    points_map.emplace_back((T_map_lidar * p_lidar).cast<float>());
+        motion.undistort(point.p_lidar.template cast<double>(), static_cast<double>(point.sweep_fraction));
+    points_map.emplace_back((T_map_lidar * p_lidar).template cast<float>());
   }
+  return points_map;
 }
 
 std::vector<FeaturePoint> thin(std::span<const FeaturePoint> points, double voxel_m) {
@@ -145,8 +149,13 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
     find_moving(seen, motion, T_map_lidar, result.objects);
     result.finished_objects = trajectories_.take_finished();
   });
-  timed(times, Stage::map_update, [&] { commit(prepared, seen, T_odometry, T_map_lidar, sweep, result); });
-  state_.likely_objects = std::move(found.likely);
+  State next;
+  next.stamp_s = prepared.stamp_s;
+  next.T_odom_lidar = state_.T_odom_lidar * T_odometry;
+  next.T_map_lidar = T_map_lidar;
+  next.T_sweep = interpolate(increment, 1.0 / sweep.sweeps_since_previous);
+  next.likely_objects = std::move(found.likely);
+  timed(times, Stage::map_update, [&] { commit(prepared, seen, motion, std::move(next), result); });
   result.percept = std::move(seen);
   return result;
 }
@@ -259,10 +268,7 @@ void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& moti
   const bool separate = config_.mapping.local_map.separate_classes;
   LocalMaps& maps = local_maps_;
   const auto insert = [&](const FeatureSet& set, LocalMap& own_map) {
-    std::vector<Eigen::Vector3f> points_map;
-    points_map.reserve(set.candidates.size());
-    append_placed(set.candidates, motion, T_map_lidar, points_map);
-    (separate ? own_map : maps.surface).insert(points_map);
+    (separate ? own_map : maps.surface).insert(placed(set.candidates, motion, T_map_lidar));
   };
   insert(seen.edge, maps.edge);
   insert(seen.ground, maps.ground);
@@ -296,11 +302,7 @@ void Pipeline::find_moving(const Percept& seen, const SweepMotion& motion, const
                       .T_map_object = object.T_map_object,
                       .moving_probability = object.moving_probability};
     if (object.detection) {
-      for (const Point& point : seen.objects[*object.detection].points) {
-        const Eigen::Vector3d p_lidar =
-            motion.undistort(point.p_lidar.cast<double>(), static_cast<double>(point.sweep_fraction));
-        sight.points_map.push_back((T_map_lidar * p_lidar).cast<float>());
-      }
+      sight.points_map = placed(seen.objects[*object.detection].points, motion, T_map_lidar);
     }
     sights.push_back(std::move(sight));
   }
@@ -312,18 +314,11 @@ std::vector<MappedObject> Pipeline::object_maps() const {
   return trajectories_.maps();
 }
 
-void Pipeline::commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
-                      const SweepTiming& timing, FrameResult& result) {
-  const SE3 increment = sweep_increment(T_odometry, T_map_lidar);
-  const SweepMotion motion = SweepMotion::from_increment(increment, timing);
-
-  State next;
+void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& motion, State next,
+                      FrameResult& result) {
+  const SE3& T_map_lidar = next.T_map_lidar;
   next.empty = false;
   next.motion_known = result.refinement.usable();
-  next.stamp_s = scan.stamp_s;
-  next.T_odom_lidar = state_.T_odom_lidar * T_odometry;
-  next.T_map_lidar = T_map_lidar;
-  next.T_sweep = interpolate(increment, 1.0 / timing.sweeps_since_previous);
   if (result.first && !scan.motion_compensated) next.unplaced = seen;
   const bool placeable =
       result.counts.candidates >= static_cast<std::size_t>(config_.mapping.refinement.min_matches);

@@ -85,8 +85,9 @@ class Pipeline {
 
   void update_static_map(const Scan& scan, const Percept& seen, const SweepMotion& motion,
                          const SE3& T_map_lidar, std::span<const TrackedObject> objects);
-  void commit(const Scan& scan, const Percept& seen, const SE3& T_odometry, const SE3& T_map_lidar,
-              const SweepTiming& timing, FrameResult& result);
+  /// @param next  with stamp, poses and motion of this scan; the rest is filled in
+  void commit(const Scan& scan, const Percept& seen, const SweepMotion& motion, State next,
+              FrameResult& result);
 
   PipelineConfig config_;
   State state_;

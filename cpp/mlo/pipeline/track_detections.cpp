@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "mlo/core/error.hpp"
+#include "mlo/core/log_odds.hpp"
 #include "mlo/io/atomic_file.hpp"
 #include "mlo/io/kitti_box.hpp"
 #include "mlo/io/kitti_tracks.hpp"
@@ -83,7 +84,7 @@ std::vector<ObjectRecord> kitti_records(std::span<const FrameTracks> frames, con
                          .type = std::string(to_string(object.object_class)),
                          .image_box = *image_box,
                          .box = box_in_lidar(box, T_camera0_level()),
-                         .score = 1.0 / (1.0 + std::exp(-object.belief))});
+                         .score = probability(object.belief)});
     }
   }
   return records;

@@ -6,14 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "mlo/core/log_odds.hpp"
 #include "mlo/io/kitti_box.hpp"
 
 namespace mlo::simulator {
 namespace {
-
-double logistic(double logit) {
-  return 1.0 / (1.0 + std::exp(-logit));
-}
 
 double horizontal_distance(const Box3d& box) {
   return box.center_lidar_m.head<2>().norm();
@@ -43,7 +40,7 @@ Detection false_positive(const DetectorErrors& errors, Random& random) {
   detection.box.center_lidar_m = {distance * std::cos(azimuth), distance * std::sin(azimuth),
                                   kGround_m + 0.5 * detection.box.size_lwh_m.z()};
   detection.box.yaw_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
-  detection.confidence = logistic(-1.0 + errors.score_noise * random.normal());
+  detection.confidence = probability(-1.0 + errors.score_noise * random.normal());
   return detection;
 }
 
@@ -51,7 +48,7 @@ Detection false_positive(const DetectorErrors& errors, Random& random) {
 double confidence(std::size_t points, const DetectorErrors& errors, Random& random) {
   if (errors.score_noise == 0.0) return 1.0;
   const double logit = 0.8 * std::log(std::max<double>(1.0, static_cast<double>(points)) / 8.0) + 1.0;
-  return logistic(logit + errors.score_noise * random.normal());
+  return probability(logit + errors.score_noise * random.normal());
 }
 
 int count_of_false_positives(double mean, Random& random) {

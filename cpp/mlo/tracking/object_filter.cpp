@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "mlo/core/log_odds.hpp"
+
 namespace mlo {
 namespace {
 
@@ -30,9 +32,7 @@ Eigen::Matrix2d oriented_covariance(double yaw_rad, double along_sd, double acro
 double confidence_logit(double confidence) {
   constexpr double kMin = -2.0;
   constexpr double kMax = 12.0;
-  if (!(confidence > 0.0)) return kMin;
-  if (confidence >= 1.0) return kMax;
-  return std::clamp(std::log(confidence / (1.0 - confidence)), kMin, kMax);
+  return std::isnan(confidence) ? kMin : std::clamp(log_odds(confidence), kMin, kMax);
 }
 
 BoxMeasurement measure(const Detection& detection, const SE3& T_map_lidar, const BoxNoiseConfig& config) {

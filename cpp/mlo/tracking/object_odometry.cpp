@@ -4,15 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "mlo/core/heading.hpp"
 #include "mlo/tracking/sgf_solver.hpp"
 
 namespace mlo {
 namespace {
-
-double yaw_of(const SE3& pose) {
-  const Eigen::Vector3d heading = pose.rotation() * Eigen::Vector3d::UnitX();
-  return std::atan2(heading.y(), heading.x());
-}
 
 /// The angle, turned round if it points away from the reference.
 double same_way(double yaw_rad, double reference_rad) {

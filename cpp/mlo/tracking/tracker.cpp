@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mlo/core/heading.hpp"
 #include "mlo/core/parallel.hpp"
 #include "mlo/tracking/ego_from_boxes.hpp"
 #include "mlo/tracking/visibility.hpp"
@@ -23,9 +24,7 @@ bool is_wheeled(ObjectClass object_class) {
 }
 
 Box3d box_at(const SE3& T_map_object, const Eigen::Vector3d& size_lwh_m, const SE3& T_map_lidar) {
-  const Eigen::Vector3d heading = T_map_object.rotation() * Eigen::Vector3d::UnitX();
-  return in_lidar({T_map_object.translation(), size_lwh_m, std::atan2(heading.y(), heading.x())},
-                  T_map_lidar);
+  return in_lidar({T_map_object.translation(), size_lwh_m, yaw_of(T_map_object)}, T_map_lidar);
 }
 
 double field_of_view_rad(const LifecycleConfig& config) {
