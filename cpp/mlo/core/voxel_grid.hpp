@@ -46,8 +46,12 @@ std::vector<T> downsample_first(std::span<const T> points, float voxel_m, Positi
   tsl::robin_set<VoxelKey, VoxelKeyHash> taken;
   taken.reserve(points.size() / 4);  // what dense scans leave; the table grows if it must
   std::vector<T> kept;
+  VoxelKey last;
   for (const T& point : points) {
-    if (taken.insert(voxel_key(position(point), inverse_size)).second) kept.push_back(point);
+    const VoxelKey key = voxel_key(position(point), inverse_size);
+    const bool repeated = !kept.empty() && key == last;  // as most neighbours in a scan line are
+    last = key;
+    if (!repeated && taken.insert(key).second) kept.push_back(point);
   }
   return kept;
 }

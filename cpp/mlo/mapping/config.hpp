@@ -37,7 +37,7 @@ enum class ShapeModel {
 struct RefinementConfig {
   ShapeModel shape_model = ShapeModel::distribution;
   bool correct_distortion = true;
-  double source_voxel_m = 0.55;
+  double source_voxel_m = 0.6;
   int neighbours = 8;
   double max_thickness_m = 0.1;
   double max_flatness = 0.1;

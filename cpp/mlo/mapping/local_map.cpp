@@ -86,9 +86,16 @@ Eigen::Vector3f LocalMap::middle(const VoxelKey& key) const {
 void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
   const auto spacing2 =
       static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
+  VoxelBlock* block = nullptr;
+  VoxelKey last_block;
   for (const Eigen::Vector3f& p : points_map) {
     const VoxelKey key = voxel_key(p, inverse_voxel_);
-    std::uint32_t& place = blocks_[VoxelBlock::key_of(key)].at(key);
+    // Neighbours in a scan are neighbours in the map.
+    if (block == nullptr || VoxelBlock::key_of(key) != last_block) {
+      last_block = VoxelBlock::key_of(key);
+      block = &blocks_[last_block];
+    }
+    std::uint32_t& place = block->at(key);
     if (place == VoxelBlock::kNone) place = take_voxel();
     Voxel& home = voxel(place);
     if (home.count >= config_.max_points_per_voxel) continue;
