@@ -125,7 +125,7 @@ void run_command(Options options) {
   progress.reset();
   print_summary(summary, options.run.out);
   if (summary.interrupted) {
-    spdlog::warn("stopped early: the results hold the scans up to then");
+    spdlog::warn("stopped early: the results hold the scans up to then; --resume goes on from there");
     throw CLI::RuntimeError(kInterrupted);
   }
 }
@@ -158,6 +158,12 @@ void add_run(CLI::App& program) {
       ->type_name("A:B");
   command->add_option("--roi", options->roi, "Region of interest, short for --set input.roi=...")
       ->check(CLI::IsMember({"full", "camera"}));
+  command->add_flag("--resume", options->run.resume,
+                    "Go on where a run with the same DIR, scans and settings was stopped or killed");
+  command
+      ->add_option("--save-every", options->run.state_scans,
+                   "Scans between the states that --resume goes on from, at first; 0: none")
+      ->capture_default_str();
   command
       ->add_option("--threads", options->threads,
                    "Most threads to use, 0 for all cores; the results are the same")
@@ -175,7 +181,8 @@ Examples:
   mlo run kitti --sequence 04 --roi camera --preset paper --out out/04_paper
   mlo run kitti_raw/2011_09_26/2011_09_26_drive_0005_sync --out out/0005
   mlo run kitti_raw/2011_09_26/2011_09_26_drive_0005_sync --detections boxes.csv --out out/0005
-  mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine)");
+  mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine
+  mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine --resume)");
   command->callback([options] { run_command(*options); });
 }
 

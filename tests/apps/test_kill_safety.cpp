@@ -12,6 +12,7 @@
 #include "io/synthetic_sweep.hpp"
 #include "mlo/io/trajectory_file.hpp"
 #include "mlo/scene/scene_file.hpp"
+#include "pipeline/run_folders.hpp"
 #include "pipeline/street.hpp"
 
 extern char** environ;
@@ -41,9 +42,14 @@ std::uint64_t size_of(const std::filesystem::path& file) {
   return missing ? 0 : size;
 }
 
+std::vector<std::string> run_words(const std::filesystem::path& scans, const std::filesystem::path& out) {
+  return {"-q", "run", scans.string(), "--out", out.string(), "--save-every", "3"};
+}
+
 /// Runs the program and kills it as soon as the scene file has so many bytes.
 void run_and_kill(const std::filesystem::path& scans, const std::filesystem::path& out, std::uint64_t bytes) {
-  std::vector<std::string> words{MLO_PROGRAM, "-q", "run", scans.string(), "--out", out.string()};
+  std::vector<std::string> words = run_words(scans, out);
+  words.insert(words.begin(), MLO_PROGRAM);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -70,15 +76,21 @@ void expect_whole(const std::filesystem::path& out) {
   }
 }
 
-TEST(KillSafety, AKilledRunLeavesASceneUpToTheLastFinishedScan) {
+// The short form of scripts/kill_test.py.
+TEST(KillSafety, AKilledRunLeavesASceneUpToTheLastFinishedScanAndGoesOnToTheSameBytes) {
   const std::filesystem::path scans = street_scans();
+  const std::filesystem::path whole = scans.parent_path() / "whole";
   const std::filesystem::path out = scans.parent_path() / "out";
-  ASSERT_EQ(run_program({"-q", "run", scans.string(), "--out", out.string()}).exit_code, 0);
-  const std::uint64_t whole = size_of(out / "scene.mlo");
+  ASSERT_EQ(run_program(run_words(scans, whole)).exit_code, 0);
   for (const double share : {0.02, 0.3, 0.61, 0.9}) {
     std::filesystem::remove_all(out);
-    run_and_kill(scans, out, static_cast<std::uint64_t>(share * static_cast<double>(whole)));
+    const auto size = static_cast<double>(size_of(whole / "scene.mlo"));
+    run_and_kill(scans, out, static_cast<std::uint64_t>(share * size));
     expect_whole(out);
+    std::vector<std::string> words = run_words(scans, out);
+    words.emplace_back("--resume");
+    ASSERT_EQ(run_program(words).exit_code, 0) << share;
+    EXPECT_THAT(test::different_results(whole, out), testing::IsEmpty()) << share;
   }
 }
 

@@ -72,14 +72,15 @@ TEST(Archive, NumbersAreLittleEndian) {
   EXPECT_EQ(bytes_of(std::string("x")), std::string("\x01\0\0\0\0\0\0\0x", 9));
 }
 
-TEST(Archive, PosesComeBack) {
+// Normalising a rotation a second time may change its last bit.
+TEST(Archive, PosesKeepEveryBit) {
   for (int i = 0; i < 200; ++i) {
     const SE3 pose = SE3::exp(SE3::Tangent::Random());
     const std::string bytes = bytes_of(pose);
     SE3 back;
     ArchiveReader reader(bytes, "test");
     reader(back);
-    EXPECT_TRUE(back.rotation().coeffs().isApprox(pose.rotation().coeffs(), 1e-15));
+    EXPECT_TRUE(back.rotation().coeffs() == pose.rotation().coeffs());
     EXPECT_TRUE(back.translation() == pose.translation());
   }
 }

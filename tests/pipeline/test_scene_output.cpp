@@ -100,7 +100,7 @@ TEST(SceneOutput, ScansAndSkippedScansAreInTheFile) {
   const test::TempFolder folder;
   const std::filesystem::path path = folder.path() / "scene.mlo";
   {
-    SceneOutput output(path, {}, {});
+    SceneOutput output(path, SceneMeta(), {});
     for (FrameResult& result : street_results()) output.write(std::move(result));
     output.write_skipped(kScans, 0.6, "no file", {});
     output.finish();
@@ -118,7 +118,7 @@ TEST(SceneOutput, WithoutCloudsTheFileHasNone) {
   const test::TempFolder folder;
   const std::filesystem::path path = folder.path() / "scene.mlo";
   {
-    SceneOutput output(path, {}, {.clouds = false});
+    SceneOutput output(path, SceneMeta(), {.clouds = false});
     for (FrameResult& result : street_results()) output.write(std::move(result));
     output.finish();
   }
@@ -126,7 +126,7 @@ TEST(SceneOutput, WithoutCloudsTheFileHasNone) {
 }
 
 TEST(SceneOutput, AFullDiskIsAnInputError) {
-  EXPECT_THROW(SceneOutput("/dev/full", {}, {}), InputError);
+  EXPECT_THROW(SceneOutput("/dev/full", SceneMeta(), {}), InputError);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(SceneFile, TheLastMapCounts) {
   const std::filesystem::path path = folder.path() / "scene.mlo";
   std::vector<MapPoint> points = test::small_map();
   {
-    SceneWriter writer(path, {}, {});
+    SceneWriter writer(path, SceneMeta(), {});
     writer.write_map(points);
     points.erase(points.begin(), points.begin() + 60);  // whole tiles vanish
     points.push_back({{1.0F, 2.0F, 50.0F}, 0.0F, MapLabel::edge});
@@ -87,7 +87,7 @@ TEST(SceneFile, TheLastMapCounts) {
 TEST(SceneFile, AMapThatStaysIsNotWrittenAgain) {
   const test::TempFolder folder;
   {
-    SceneWriter writer(folder.path() / "scene.mlo", {}, {});
+    SceneWriter writer(folder.path() / "scene.mlo", SceneMeta(), {});
     for (int i = 0; i < 3; ++i) writer.write_map(test::small_map());
   }
   const ChunkFile file(folder.path() / "scene.mlo");

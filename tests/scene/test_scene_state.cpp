@@ -46,7 +46,7 @@ TEST_F(State, BetweenTwoScansIsOnTheWay) {
 
 TEST_F(State, AnObjectOfOneScanOnlyBelongsToThatOne) {
   {
-    SceneWriter writer(path_, {}, {});
+    SceneWriter writer(path_, SceneMeta(), {});
     writer.write(test::small_scan(0), nullptr);
     SceneScan without = test::small_scan(1);
     without.objects.clear();

@@ -16,7 +16,6 @@
 #include <Eigen/Geometry>
 
 #include "mlo/core/error.hpp"
-#include "mlo/core/se3.hpp"
 
 // How a struct or class becomes bytes and comes back from them, said once for both directions:
 //
@@ -26,9 +25,8 @@
 //     static void archive(auto& self, auto& bytes) { bytes(self.id, self.T_map_object); }
 //   };
 //
-// Numbers are little-endian and keep every bit (rotations may lose the last one: they are normalised again);
-// lists are preceded by their length (64 bits), optional values by a byte. There are no names and no versions
-// in between: the file around them says what follows.
+// Numbers are little-endian and keep every bit; lists are preceded by their length (64 bits), optional values
+// by a byte. There are no names and no versions in between: the file around them says what follows.
 namespace mlo {
 
 static_assert(std::endian::native == std::endian::little,
@@ -43,9 +41,16 @@ concept KeyedMap = requires {
   typename T::mapped_type;
 };
 
+template <class T>
+concept KeySet = requires {
+  typename T::key_type;
+}
+&&!KeyedMap<T>;
+
 /// Appends values to a string of bytes.
 class ArchiveWriter {
  public:
+  static constexpr bool kReads = false;
   template <class... Ts>
   void operator()(const Ts&... values) {
     (put(values), ...);
@@ -81,6 +86,10 @@ class ArchiveWriter {
   void put(const T& values) {
     put_list(values);
   }
+  template <KeySet T>
+  void put(const T& values) {
+    put_list(values);
+  }
   template <class A, class B>
   void put(const std::pair<A, B>& pair) {
     (*this)(pair.first, pair.second);
@@ -112,7 +121,6 @@ class ArchiveWriter {
     put_raw(matrix.data(), sizeof(T) * Rows * Cols);
   }
   void put(const Eigen::Quaterniond& rotation) { put(rotation.coeffs()); }
-  void put(const SE3& pose) { (*this)(pose.rotation(), pose.translation()); }
   template <class T>
   requires requires(const T& value, ArchiveWriter& writer) { T::archive(value, writer); }
   void put(const T& value) { T::archive(value, *this); }
@@ -123,6 +131,8 @@ class ArchiveWriter {
 /// Takes the values out again, in the same order.
 class ArchiveReader {
  public:
+  static constexpr bool kReads = true;
+
   /// @param bytes   kept by the caller
   /// @param source  where they come from, for messages
   ArchiveReader(std::string_view bytes, std::string source) : rest_(bytes), source_(std::move(source)) {}
@@ -181,6 +191,15 @@ class ArchiveReader {
       values.insert(std::move(entry));
     }
   }
+  template <KeySet T>
+  void get(T& values) {
+    values.clear();
+    for (std::size_t i = get_length(1); i > 0; --i) {
+      typename T::key_type key;
+      get(key);
+      values.insert(std::move(key));
+    }
+  }
   void get(std::string& text) {
     text.resize(get_length(1));
     get_raw(text.data(), text.size());
@@ -209,12 +228,6 @@ class ArchiveReader {
     get_raw(matrix.data(), sizeof(T) * Rows * Cols);
   }
   void get(Eigen::Quaterniond& rotation) { get(rotation.coeffs()); }
-  void get(SE3& pose) {
-    Eigen::Quaterniond rotation;
-    Eigen::Vector3d translation_m;
-    (*this)(rotation, translation_m);
-    pose = SE3(rotation, translation_m);
-  }
   template <class T>
   requires requires(T& value, ArchiveReader& reader) { T::archive(value, reader); }
   void get(T& value) { T::archive(value, *this); }

@@ -26,6 +26,8 @@ struct Box3d {
   SE3 T_lidar_object() const;
   /// True if the point lies inside or within margin_m of the box's faces.
   bool contains(const Eigen::Vector3d& p_lidar, double margin_m = 0.0) const;
+  // See core/archive.hpp.
+  static void archive(auto& self, auto& bytes) { bytes(self.center_lidar_m, self.size_lwh_m, self.yaw_rad); }
 };
 
 /// The upright box that an annotator would draw around an object: its centre and heading, without its tilt.
@@ -45,6 +47,7 @@ struct Detection {
   ObjectClass object_class = ObjectClass::car;
   Box3d box;
   double confidence = 1.0;  ///< in [0, 1]
+  static void archive(auto& self, auto& bytes) { bytes(self.object_class, self.box, self.confidence); }
 };
 
 }  // namespace mlo

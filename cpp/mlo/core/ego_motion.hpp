@@ -39,6 +39,10 @@ struct PoseEstimate {
     return status == EstimateStatus::converged || status == EstimateStatus::max_iterations ||
            status == EstimateStatus::degenerate;
   }
+  static void archive(auto& self, auto& bytes) {  // core/archive.hpp
+    bytes(self.T_target_source, self.status, self.covariance, self.degenerate_directions, self.num_matches,
+          self.iterations, self.rms_residual_m);
+  }
 };
 
 }  // namespace mlo

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "mlo/core/box.hpp"
 #include "mlo/core/types.hpp"
@@ -16,12 +17,16 @@ struct FeaturePoint {
   float smoothness = 0.0F;                            ///< c of LOAM's Eq. (1), without unit; 0 flat
   float intensity = 0.0F;
   std::uint16_t ring = Point::kNoRing;
+  static void archive(auto& self, auto& bytes) {  // core/archive.hpp
+    bytes(self.p_lidar, self.sweep_fraction, self.smoothness, self.intensity, self.ring);
+  }
 };
 
 /// One kind of feature: few well-chosen points to be matched, and many candidates to be matched against.
 struct FeatureSet {
   std::vector<FeaturePoint> features;    ///< index f in the paper
   std::vector<FeaturePoint> candidates;  ///< index c in the paper
+  static void archive(auto& self, auto& bytes) { bytes(self.features, self.candidates); }
 };
 
 /// A detected object and what it encloses, without ground (gamma of the paper).
@@ -29,6 +34,7 @@ struct ObjectPoints {
   Detection detection;
   std::vector<Point> points;
   std::vector<FeaturePoint> edge_candidates;  ///< gamma_c
+  static void archive(auto& self, auto& bytes) { bytes(self.detection, self.points, self.edge_candidates); }
 };
 
 /// What perception makes of one scan (paper, section III-B).
@@ -40,6 +46,10 @@ struct Percept {
   double mean_ground_smoothness = 0.0;  ///< S_a, Eq. (1)
   std::size_t num_ground_points = 0;
   std::size_t num_ambiguous_points = 0;  ///< both ground and object: they take no part in anything
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.ground, self.edge, self.surface, self.objects, self.mean_ground_smoothness,
+          self.num_ground_points, self.num_ambiguous_points);
+  }
 };
 
 }  // namespace mlo

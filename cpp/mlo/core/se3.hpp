@@ -44,6 +44,9 @@ class SE3 {
   double rotation_angle_rad() const { return so3_log(rotation_).norm(); }
   bool is_finite() const { return rotation_.coeffs().allFinite() && translation_.allFinite(); }
 
+  /// Every bit comes back: the rotation is not normalised again (core/archive.hpp).
+  static void archive(auto& self, auto& bytes) { bytes(self.rotation_, self.translation_); }
+
  private:
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation_ = Eigen::Vector3d::Zero();

@@ -17,6 +17,9 @@ struct Point {
   float intensity = 0.0F;                             ///< reflectance as the data has it, usually [0, 1]
   float sweep_fraction = 0.0F;                        ///< time within the sweep, 0 at its start, 1 at its end
   std::uint16_t ring = kNoRing;                       ///< scan line, 0 the highest beam
+  static void archive(auto& self, auto& bytes) {      // core/archive.hpp
+    bytes(self.p_lidar, self.intensity, self.sweep_fraction, self.ring);
+  }
 };
 
 /// What one revolution of the lidar saw.
@@ -38,6 +41,7 @@ struct MapPoint {
   Eigen::Vector3f p_map = Eigen::Vector3f::Zero();  ///< map frame [m]
   float intensity = 0.0F;                           ///< as in Point
   MapLabel label = MapLabel::unknown;
+  static void archive(auto& self, auto& bytes) { bytes(self.p_map, self.intensity, self.label); }
 };
 
 }  // namespace mlo

@@ -17,6 +17,7 @@ struct VoxelKey {
   int y = 0;
   int z = 0;
   bool operator==(const VoxelKey&) const = default;
+  static void archive(auto& self, auto& bytes) { bytes(self.x, self.y, self.z); }  // core/archive.hpp
 };
 
 /// The voxel that holds a point, with inverse_size [1/m] one over the voxel's side; voxels start at multiples

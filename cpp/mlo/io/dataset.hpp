@@ -37,6 +37,7 @@ struct PoseList {
   std::vector<std::size_t> frames;
   std::vector<double> stamps_s;  ///< empty where the format has none
   std::vector<SE3> T_world_body;
+  static void archive(auto& self, auto& bytes) { bytes(self.frames, self.stamps_s, self.T_world_body); }
 };
 
 /// KITTI calibration, as far as the folder has it.

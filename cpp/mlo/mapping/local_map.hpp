@@ -43,6 +43,11 @@ class LocalMap {
   std::size_t num_voxels() const { return num_voxels_; }
   void clear();
 
+  /// All but the configuration (core/archive.hpp).
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.blocks_, self.pools_, self.num_voxels_, self.num_taken_, self.free_, self.last_center_map_);
+  }
+
  private:
   // Two cache lines, as a search is bound by memory: coordinates in 1/65536 of the voxel's side from its
   // middle. They are apart, so that the distances to all points are computed side by side.
@@ -60,6 +65,7 @@ class LocalMap {
       __builtin_prefetch(&x);
       __builtin_prefetch(&count);
     }
+    static void archive(auto& self, auto& bytes) { bytes(self.x, self.y, self.z, self.count); }
   };
 
   class Neighbourhood;

@@ -21,6 +21,7 @@ class ObjectMap {
   void insert(std::span<const Eigen::Vector3f> points_map, const SE3& T_map_object, double voxel_m);
   void clear();
   const std::vector<Eigen::Vector3f>& points_object() const { return points_; }
+  static void archive(auto& self, auto& bytes) { bytes(self.points_, self.taken_); }  // core/archive.hpp
 
  private:
   std::vector<Eigen::Vector3f> points_;

@@ -82,6 +82,10 @@ StaticMap::Tile& StaticMap::tile_at(const Eigen::Vector3f& p_map) {
 void StaticMap::fetch(Tile& tile) const {
   tile.entries = entries_of(tile);
   tile.num_spooled = 0;
+  make_index(tile);
+}
+
+void StaticMap::make_index(Tile& tile) const {
   for (std::uint32_t i = 0; i < tile.entries.size(); ++i) {
     const VoxelKey voxel = voxel_key(tile.entries[i].point.p_map, inverse_voxel_);
     tile.index[VoxelBlock::key_of(voxel)].at(voxel) = i;
@@ -100,11 +104,15 @@ void StaticMap::spool_far(const Eigen::Vector3f& center_map) {
     if (tile.entries.empty() ||
         distance_m(tile.key, center_map) <= static_cast<float>(config_.memory_radius_m))
       continue;
-    tile.place = spool_.write(std::as_bytes(std::span(tile.entries)));
-    tile.num_spooled = tile.entries.size();
-    tile.entries = {};
-    tile.index = {};
+    spool(tile);
   }
+}
+
+void StaticMap::spool(Tile& tile) {
+  tile.place = spool_.write(std::as_bytes(std::span(tile.entries)));
+  tile.num_spooled = tile.entries.size();
+  tile.entries = {};
+  tile.index = {};
 }
 
 void StaticMap::observe(const RangeImage& view, const SweepMotion& motion, const SE3& T_map_lidar) {
@@ -137,6 +145,29 @@ void StaticMap::observe(Tile& tile, const RangeImage& view, const SweepMotion& m
       entry.votes = std::min(entry.votes + static_cast<float>(config_.free_space_hit_votes), limit);
     } else if (sight == Sight::through) {
       entry.votes = std::max(entry.votes - 1.0F, -limit);
+    }
+  }
+}
+
+void StaticMap::archive(const StaticMap& self, ArchiveWriter& bytes) {
+  bytes(self.tiles_.size());
+  for (const Tile& tile : self.tiles_) bytes(tile.key, tile.num_spooled > 0, self.entries_of(tile));
+}
+
+void StaticMap::archive(StaticMap& self, ArchiveReader& bytes) {
+  self = StaticMap(self.config_);
+  std::size_t count = 0;
+  bytes(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Tile& tile = self.tiles_.emplace_back();
+    bool spooled = false;
+    bytes(tile.key, spooled, tile.entries);
+    self.tile_index_.emplace(tile.key, i);
+    // What is on disk takes no part in votes before it is fetched: it has to be there again.
+    if (spooled) {
+      self.spool(tile);
+    } else {
+      self.make_index(tile);
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include <tsl/robin_map.h>
 
+#include "mlo/core/archive.hpp"
 #include "mlo/core/features.hpp"
 #include "mlo/core/sweep_motion.hpp"
 #include "mlo/core/types.hpp"
@@ -45,10 +46,15 @@ class StaticMap {
   /// order that depends only on what was inserted and observed.
   std::vector<MapPoint> points() const;
 
+  /// All but the configuration (core/archive.hpp), what waits on disk too.
+  static void archive(const StaticMap& self, ArchiveWriter& bytes);
+  static void archive(StaticMap& self, ArchiveReader& bytes);
+
  private:
   struct Entry {
     MapPoint point;
     float votes = 0.0F;  // for being there
+    static void archive(auto& self, auto& bytes) { bytes(self.point, self.votes); }
   };
   /// A column of the map: what is near the robot is found by its tiles.
   struct Tile {
@@ -65,7 +71,9 @@ class StaticMap {
   using Counts = tsl::robin_map<VoxelKey, int, VoxelKeyHash>;
   Counts count_seen_through() const;
   Tile& tile_at(const Eigen::Vector3f& p_map);
+  void spool(Tile& tile);
   void fetch(Tile& tile) const;
+  void make_index(Tile& tile) const;
   std::vector<Entry> entries_of(const Tile& tile) const;
   void observe(Tile& tile, const RangeImage& view, const SweepMotion& motion, const SE3& T_lidar_map) const;
   static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }

@@ -41,6 +41,21 @@ std::vector<MappedObject> TrajectoryList::maps() const {
   return maps;
 }
 
+void TrajectoryList::archive(const TrajectoryList& self, ArchiveWriter& bytes) {
+  bytes(self.finished_, self.entries_);
+}
+
+void TrajectoryList::archive(TrajectoryList& self, ArchiveReader& bytes) {
+  std::size_t count = 0;
+  bytes(self.finished_, count);
+  self.entries_.clear();
+  for (; count > 0; --count) {
+    long id = 0;
+    bytes(id);
+    bytes(self.entries_.try_emplace(id, local_map_config(self.config_)).first->second);
+  }
+}
+
 const LocalMap* TrajectoryList::map_at_rest(const Eigen::Vector3d& center_map) const {
   const auto fits = [&](const Entry& entry) {
     const double distance_m = (entry.T_map_object.translation() - center_map).head<2>().norm();

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "mlo/core/archive.hpp"
 #include "mlo/core/labelled_point.hpp"
 #include "mlo/core/se3.hpp"
 #include "mlo/mapping/config.hpp"
@@ -28,6 +29,7 @@ struct ObjectSight {
 struct MappedObject {
   long id = 0;
   std::vector<Eigen::Vector3f> points_object;  ///< in its own frame [m]
+  static void archive(auto& self, auto& bytes) { bytes(self.id, self.points_object); }  // core/archive.hpp
 };
 
 /// The absolute trajectory tracking list (ATTL) of the paper, section III-D-1: which objects move, by their
@@ -51,6 +53,10 @@ class TrajectoryList {
   /// Maps of those that are followed.
   std::vector<MappedObject> maps() const;
 
+  /// All but the configuration (core/archive.hpp).
+  static void archive(const TrajectoryList& self, ArchiveWriter& bytes);
+  static void archive(TrajectoryList& self, ArchiveReader& bytes);
+
  private:
   struct Entry {
     explicit Entry(const LocalMapConfig& config) : at_rest(config) {}
@@ -62,6 +68,10 @@ class TrajectoryList {
     SE3 T_map_object;                       // at rest: the oldest pose
     LocalMap at_rest;                       // its points while it rests, map frame
     ObjectMap map;
+    static void archive(auto& self, auto& bytes) {
+      bytes(self.mobility, self.sightings, self.scans_displaced, self.too_slow_to_tell, self.scans_in_place,
+            self.T_map_object, self.at_rest, self.map);
+    }
   };
 
   void update(Entry& entry, const ObjectSight& sight) const;

@@ -25,6 +25,7 @@ struct VoxelBlock {
   /// The place of one of its voxels; kNone where there is nothing.
   std::uint32_t& at(const VoxelKey& voxel) { return places[index_of(voxel)]; }
   std::uint32_t at(const VoxelKey& voxel) const { return places[index_of(voxel)]; }
+  static void archive(auto& self, auto& bytes) { bytes(self.places); }  // core/archive.hpp
 
  private:
   static std::size_t index_of(const VoxelKey& voxel) {

@@ -123,7 +123,11 @@ CandidateSet::CandidateSet(const std::vector<FeaturePoint>& candidates, const Sw
   }
   const auto known = std::find(rings_.begin(), rings_.end(), Point::kNoRing);
   ring_begin_.push_back(static_cast<std::size_t>(known - rings_.begin()));
-  if (!points_.empty()) tree_ = std::make_unique<const Tree>(points_);
+  build_tree();
+}
+
+void CandidateSet::build_tree() {
+  tree_ = points_.empty() ? nullptr : std::make_unique<const Tree>(points_);
 }
 
 std::optional<std::size_t> CandidateSet::nearest(const Eigen::Vector3d& p, double max_distance_m) const {

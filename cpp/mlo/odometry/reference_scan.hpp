@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "mlo/core/features.hpp"
@@ -51,8 +52,15 @@ class CandidateSet {
   std::optional<std::size_t> nearest_on_ring(const RingQuery& query, std::size_t ring, double max_distance_m,
                                              const Accept& accept) const;
 
+  /// See core/archive.hpp; the search structure is built anew.
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.points_, self.rings_, self.azimuths_, self.ring_begin_);
+    if constexpr (std::remove_reference_t<decltype(bytes)>::kReads) self.build_tree();
+  }
+
  private:
   struct Tree;
+  void build_tree();
 
   std::vector<Eigen::Vector3f> points_;
   std::vector<std::uint16_t> rings_;
@@ -66,6 +74,7 @@ struct ReferenceScan {
   CandidateSet ground;
   CandidateSet edge;
   CandidateSet surface;
+  static void archive(auto& self, auto& bytes) { bytes(self.ground, self.edge, self.surface); }
 };
 
 /// Removes distortion by `motion` (SweepMotion::none() for motion-compensated scans) and builds the search

@@ -27,6 +27,7 @@ struct StageTimes {
   std::array<double, kNumStages> ms{};
 
   double& operator[](Stage stage) { return ms[static_cast<std::size_t>(stage)]; }
+  static void archive(auto& self, auto& bytes) { bytes(self.ms); }  // core/archive.hpp
   double total_ms() const {
     double sum = 0.0;
     for (const double value : ms) sum += value;

@@ -31,6 +31,7 @@ class ObjectTrajectories {
   /// FOLDER/00012.txt for the object with id 12; the folder is made if missing.
   /// @throws InputError when a file cannot be written
   void write(const std::filesystem::path& folder) const;
+  static void archive(auto& self, auto& bytes) { bytes(self.by_id_); }  // core/archive.hpp
 
  private:
   std::map<long, PoseList> by_id_;

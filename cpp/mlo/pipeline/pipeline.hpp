@@ -39,6 +39,12 @@ class Pipeline {
   /// Of the objects that are followed; those of others were in FrameResult::finished_objects.
   std::vector<MappedObject> object_maps() const;
 
+  /// Everything that later results depend on but the configuration (core/archive.hpp): a pipeline of the same
+  /// configuration that reads it goes on as this one would.
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.state_, self.local_maps_, self.static_map_, self.trajectories_, self.tracker_);
+  }
+
  private:
   /// What one scan leaves to the next; replaced as a whole at the end of process().
   struct State {
@@ -52,11 +58,16 @@ class Pipeline {
     int scans_lost = 0;       ///< in a row, up to this one; scans too empty to be placed do not count
     std::vector<Detection> likely_objects;  ///< the detector's, for the next scan to look back at
     std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
+    static void archive(auto& self, auto& bytes) {
+      bytes(self.empty, self.motion_known, self.stamp_s, self.T_odom_lidar, self.T_map_lidar, self.T_sweep,
+            self.reference, self.scans_lost, self.likely_objects, self.unplaced);
+    }
   };
 
   /// One map, or one per class (LocalMapConfig::separate_classes).
   struct LocalMaps {
     LocalMap ground, edge, surface;
+    static void archive(auto& self, auto& bytes) { bytes(self.ground, self.edge, self.surface); }
   };
 
   /// @param given  boxes, or nothing: they are looked for

@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "mlo/core/archive.hpp"
 #include "mlo/core/error.hpp"
 #include "mlo/io/atomic_file.hpp"
 #include "mlo/io/detection_check.hpp"
+#include "mlo/pipeline/checkpoint.hpp"
 #include "mlo/pipeline/pipeline.hpp"
 #include "mlo/pipeline/run_output.hpp"
 #include "mlo/pipeline/run_report.hpp"
@@ -53,11 +55,6 @@ void warn_of_strange_boxes(const Dataset& dataset, const std::vector<std::size_t
   if (!problem.empty()) summary.warnings.push_back(problem);
 }
 
-FrameResult process(const Scan& scan, const std::optional<DetectionList>& detections, Pipeline& pipeline) {
-  if (!detections) return pipeline.process(scan);
-  return pipeline.process(scan, detections->detections_at(scan.frame, scan.stamp_s));
-}
-
 void tally(const FrameResult& result, RunSummary& summary) {
   ++summary.processed;
   summary.detections += result.counts.objects;
@@ -80,35 +77,214 @@ std::string boxes_from(bool given, Detector detector) {
   return "none";
 }
 
-/// The last scan that was processed, and how many were skipped since.
+/// When to save something that grows with the run: ever rarer, so that it does not cost more per scan the
+/// longer the run is.
+struct Schedule {
+  std::size_t every = 0;  // scans, at first; 0 never
+  std::size_t next = 0;
+
+  bool is_due(std::size_t done) {
+    if (every == 0 || done < std::max(every, next)) return false;
+    next = std::max(done + every, done * 3 / 2);
+    return true;
+  }
+  static void archive(auto& self, auto& bytes) { bytes(self.every, self.next); }
+};
+
+/// What a run knows besides its pipeline and its files.
 struct Progress {
+  std::size_t next = 0;  // of the scans to be taken
+  RunSummary summary;
+  std::optional<Eigen::Vector3d> last_position;
+  // The last scan that was processed, and how many were skipped since.
   double stamp_s = 0.0;
   double duration_s = 0.0;
   double skipped_since = 0.0;
+  std::string first_problem;
+  Schedule save_map, save_state;
+
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.next, self.summary, self.last_position, self.stamp_s, self.duration_s, self.skipped_since,
+          self.first_problem, self.save_map, self.save_state);
+  }
 };
 
-void skip(std::size_t frame, const std::string& problem, const Progress& progress, const Pipeline& pipeline,
-          RunOutput& output, RunSummary& summary) {
-  const double stamp_s = progress.stamp_s + progress.skipped_since * progress.duration_s;
-  output.write_skipped(frame, stamp_s, problem, pipeline.predict_poses(progress.skipped_since));
+// What has to be the same for a run to go on with the state of another.
+std::string owner_of(const Dataset& dataset, const std::vector<std::size_t>& indices,
+                     const PipelineConfig& config, const std::optional<DetectionList>& detections) {
+  return fmt::format("mlo {}\nscans of {} {} {}\nframes {} to {}\ndetections in {} frames\n{}", MLO_VERSION,
+                     dataset.root.string(), dataset.format, dataset.sequence,
+                     dataset.scans->frame(indices.front()), dataset.scans->frame(indices.back()),
+                     detections ? detections->by_frame.size() : 0, to_yaml(config));
+}
+
+// What a run was writing when it was killed (AtomicFile).
+void remove_unfinished_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> unfinished;
+  std::error_code absent;  // then there is nothing to remove
+  for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
+    if (entry.path().extension().string().starts_with(".part")) unfinished.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : unfinished) std::filesystem::remove(file);
+}
+
+class Run {
+ public:
+  Run(const Dataset& dataset, const std::optional<DetectionList>& detections, const PipelineConfig& config,
+      const RunOptions& options)
+      : dataset_(dataset),
+        detections_(detections),
+        config_(config),
+        options_(options),
+        indices_(select_indices(dataset, options)),
+        owner_(owner_of(dataset, indices_, config, detections)),
+        pipeline_(config) {
+    if (options.resume) remove_unfinished_files(options.out);
+    if (!options.resume || !load()) begin();
+  }
+
+  void take_all(const std::function<void(std::size_t, std::size_t)>& on_scan,
+                const std::function<bool()>& should_stop);
+  RunSummary finish();
+
+ private:
+  void begin();
+  bool load();
+  void save();
+  void take(const ScanReading& reading);
+  void skip(const std::string& problem);
+  void process(const Scan& scan);
+
+  std::filesystem::path state_file() const { return options_.out / "state.bin"; }
+
+  const Dataset& dataset_;
+  const std::optional<DetectionList>& detections_;
+  const PipelineConfig& config_;
+  const RunOptions& options_;
+  std::vector<std::size_t> indices_;
+  std::string owner_;
+  Pipeline pipeline_;
+  Progress progress_;
+  std::optional<RunOutput> output_;
+  std::future<void> saving_;
+};
+
+void Run::begin() {
+  RunSummary& summary = progress_.summary;
+  progress_.save_map.every = options_.checkpoint_scans;
+  progress_.save_state.every = options_.state_scans;
+  summary.scans = indices_.size();
+  summary.warnings = dataset_.warnings;
+  if (detections_) warn_of_strange_boxes(dataset_, indices_, *detections_, summary);
+  summary.boxes_from = boxes_from(detections_.has_value(), config_.detection.detector);
+  const bool with_objects = detections_ || config_.detection.detector != Detector::none;
+  std::error_code ignored;                         // what is wrong with the folder is met again below
+  std::filesystem::remove(state_file(), ignored);  // of an earlier run, whose files are replaced now
+  output_.emplace(options_.out, dataset_, config_, with_objects);
+  write_file_atomically(options_.out / "config.yaml", to_yaml(config_));
+}
+
+bool Run::load() {
+  const std::optional<std::string> state = read_checkpoint(state_file(), owner_);
+  if (!state) return false;
+  RunOutputState output;
+  ArchiveReader(*state, state_file().string())(progress_, output, pipeline_);
+  output_.emplace(options_.out, dataset_, config_, std::move(output));
+  return true;
+}
+
+void Run::save() {
+  ArchiveWriter state;
+  state(progress_, output_->state(), pipeline_);
+  if (saving_.valid()) saving_.get();
+  saving_ = std::async(std::launch::async,
+                       [this, bytes = state.take()] { write_checkpoint(state_file(), owner_, bytes); });
+}
+
+void Run::skip(const std::string& problem) {
+  const std::size_t frame = dataset_.scans->frame(indices_[progress_.next]);
+  RunSummary& summary = progress_.summary;
+  if (progress_.first_problem.empty()) progress_.first_problem = problem;
+  ++progress_.skipped_since;
+  const double stamp_s = progress_.stamp_s + progress_.skipped_since * progress_.duration_s;
+  output_->write_skipped(frame, stamp_s, problem, pipeline_.predict_poses(progress_.skipped_since));
   ++summary.skipped;
   if (summary.skipped <= kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("scan {} was skipped: {}", frame, problem));
   }
 }
 
+void Run::process(const Scan& scan) {
+  progress_.stamp_s = scan.stamp_s;
+  progress_.duration_s = scan.duration_s;
+  progress_.skipped_since = 0.0;
+  FrameResult result = detections_
+                           ? pipeline_.process(scan, detections_->detections_at(scan.frame, scan.stamp_s))
+                           : pipeline_.process(scan);
+  tally(result, progress_.summary);
+  const Eigen::Vector3d position = result.T_map_lidar.translation();
+  output_->write(std::move(result));
+  if (progress_.last_position) progress_.summary.path_m += (position - *progress_.last_position).norm();
+  progress_.last_position = position;
+}
+
+void Run::take(const ScanReading& reading) {
+  progress_.summary.invalid_points += reading.invalid_points;
+  if (reading.scan) {
+    process(*reading.scan);
+  } else {
+    skip(reading.problem);
+  }
+  ++progress_.next;
+  if (progress_.save_map.is_due(progress_.next)) output_->write_map(pipeline_.static_map().points());
+  if (progress_.save_state.is_due(progress_.next)) save();
+}
+
+void Run::take_all(const std::function<void(std::size_t, std::size_t)>& on_scan,
+                   const std::function<bool()>& should_stop) {
+  const auto read = [&](std::size_t i) {
+    return std::async(std::launch::async, [&, i] { return dataset_.scans->read(indices_[i]); });
+  };
+  const std::size_t count = indices_.size();
+  std::future<ScanReading> next;
+  if (progress_.next < count) next = read(progress_.next);
+  while (progress_.next < count) {
+    const ScanReading reading = next.get();
+    if (should_stop && should_stop()) {
+      progress_.summary.interrupted = true;
+      return;
+    }
+    if (progress_.next + 1 < count) next = read(progress_.next + 1);
+    take(reading);
+    if (on_scan) on_scan(progress_.next, count);
+  }
+}
+
 // What is written once, at the end.
-void finish(const Pipeline& pipeline, RunOutput& output, RunSummary& summary) {
-  const std::vector<MapPoint> map = pipeline.static_map().points();
-  output.write_map(map);
-  output.write_object_trajectories();
-  output.write_object_maps(pipeline.object_maps());
-  output.finish();
+RunSummary Run::finish() {
+  RunSummary summary = progress_.summary;
+  if (summary.interrupted) {
+    progress_.summary.interrupted = false;
+    save();  // to go on from here
+  }
+  if (saving_.valid()) saving_.get();
+  const std::vector<MapPoint> map = pipeline_.static_map().points();
+  output_->write_map(map);
+  output_->write_object_trajectories();
+  output_->write_object_maps(pipeline_.object_maps());
+  output_->finish();
   summary.map_points = map.size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",
                                            summary.skipped - kMaxListedProblems));
   }
+  write_file_atomically(options_.out / "run.json", to_json(dataset_, config_, summary));
+  if (!summary.interrupted) std::filesystem::remove(state_file());
+  if (summary.processed == 0 && !summary.interrupted) {
+    throw InputError(fmt::format("{}: none of the {} scans could be used; the first problem: {}",
+                                 dataset_.root.string(), summary.scans, progress_.first_problem));
+  }
+  return summary;
 }
 
 }  // namespace
@@ -117,60 +293,9 @@ RunSummary run(const Dataset& dataset, const std::optional<DetectionList>& detec
                const PipelineConfig& config, const RunOptions& options,
                const std::function<void(std::size_t, std::size_t)>& on_scan,
                const std::function<bool()>& should_stop) {
-  const std::vector<std::size_t> indices = select_indices(dataset, options);
-  RunSummary summary;
-  summary.scans = indices.size();
-  summary.warnings = dataset.warnings;
-  if (detections) warn_of_strange_boxes(dataset, indices, *detections, summary);
-
-  summary.boxes_from = boxes_from(detections.has_value(), config.detection.detector);
-  const bool with_objects = detections || config.detection.detector != Detector::none;
-  RunOutput output(options.out, dataset, config, with_objects);
-  write_file_atomically(options.out / "config.yaml", to_yaml(config));
-  Pipeline pipeline(config);
-  std::optional<Eigen::Vector3d> last_position;
-  Progress progress;
-  std::size_t next_checkpoint = options.checkpoint_scans;
-  std::string first_problem;
-  const auto read = [&](std::size_t i) {
-    return std::async(std::launch::async, [&, i] { return dataset.scans->read(indices[i]); });
-  };
-  std::future<ScanReading> next = read(0);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    const ScanReading reading = next.get();
-    if (should_stop && should_stop()) {
-      summary.interrupted = true;
-      break;
-    }
-    if (i + 1 < indices.size()) next = read(i + 1);
-    summary.invalid_points += reading.invalid_points;
-    if (!reading.scan) {
-      if (first_problem.empty()) first_problem = reading.problem;
-      ++progress.skipped_since;
-      skip(dataset.scans->frame(indices[i]), reading.problem, progress, pipeline, output, summary);
-    } else {
-      progress = {.stamp_s = reading.scan->stamp_s, .duration_s = reading.scan->duration_s};
-      FrameResult result = process(*reading.scan, detections, pipeline);
-      tally(result, summary);
-      const Eigen::Vector3d position = result.T_map_lidar.translation();
-      output.write(std::move(result));
-      if (last_position) summary.path_m += (position - *last_position).norm();
-      last_position = position;
-    }
-    if (options.checkpoint_scans > 0 && i + 1 >= next_checkpoint) {
-      output.write_map(pipeline.static_map().points());
-      // Ever rarer, as the map grows: saving must not cost more per scan the longer the run is.
-      next_checkpoint = std::max(i + 1 + options.checkpoint_scans, (i + 1) * 3 / 2);
-    }
-    if (on_scan) on_scan(i + 1, indices.size());
-  }
-  finish(pipeline, output, summary);
-  write_file_atomically(options.out / "run.json", to_json(dataset, config, summary));
-  if (summary.processed == 0 && !summary.interrupted) {
-    throw InputError(fmt::format("{}: none of the {} scans could be used; the first problem: {}",
-                                 dataset.root.string(), summary.scans, first_problem));
-  }
-  return summary;
+  Run run(dataset, detections, config, options);
+  run.take_all(on_scan, should_stop);
+  return run.finish();
 }
 
 }  // namespace mlo

@@ -12,6 +12,14 @@
 namespace mlo {
 namespace {
 
+constexpr const char* kTrajectory = "trajectory.txt";
+constexpr const char* kTrajectoryTum = "trajectory_tum.txt";
+constexpr const char* kTrajectoryCamera = "trajectory_camera.txt";
+constexpr const char* kOdometry = "odometry.txt";
+constexpr const char* kPerScan = "per_scan.csv";
+constexpr const char* kObjects = "objects.csv";
+constexpr const char* kScene = "scene.mlo";
+
 constexpr std::string_view kPerScanHeader =
     "frame,stamp_s,status,x_m,y_m,z_m,odometry_status,consistency_passed,consistent_share,"
     "refinement_status,degenerate_directions,matches,iterations,rms_residual_m,points,ground_points,"
@@ -55,53 +63,58 @@ std::string per_scan_row(const FrameResult& result) {
 
 }  // namespace
 
-RunOutput::TextFile::TextFile(const std::filesystem::path& file) : path(file), stream(file) {
-  if (!stream) {
-    throw InputError(fmt::format("{}: cannot be written; choose another folder with --out", path.string()));
-  }
-}
-
-void RunOutput::TextFile::write_row(const std::string& row) {
-  stream << row << '\n';
-  stream.flush();
-  if (!stream) {
-    throw InputError(
-        fmt::format("{}: writing failed, the disk may be full; the rows before are kept", path.string()));
-  }
+RunOutput::RunOutput(const std::filesystem::path& folder, const Dataset& dataset,
+                     const PipelineConfig& config, bool with_objects)
+    : folder_(create_folder(folder)), T_camera_lidar_(dataset.calibration.T_camera0_lidar) {
+  const auto create = [&](const char* name) { files_.try_emplace(name, folder / name); };
+  for (const char* name : {kTrajectory, kTrajectoryTum, kOdometry, kPerScan}) create(name);
+  if (T_camera_lidar_) create(kTrajectoryCamera);
+  if (with_objects) create(kObjects);
+  if (config.scene.write) scene_.emplace(folder / kScene, scene_meta(dataset, config), config.scene);
+  std::string header(kPerScanHeader);
+  for (const std::string_view stage : kStageNames) header += fmt::format(",{}_ms", stage);
+  write_row(kPerScan, header + ",problem");
+  if (with_objects) write_row(kObjects, object_table_header());
 }
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Dataset& dataset,
-                     const PipelineConfig& config, bool with_objects)
-    : folder_(create_folder(folder)),
+                     const PipelineConfig& config, RunOutputState state)
+    : folder_(folder),
       T_camera_lidar_(dataset.calibration.T_camera0_lidar),
-      trajectory_(folder / "trajectory.txt"),
-      trajectory_tum_(folder / "trajectory_tum.txt"),
-      odometry_(folder / "odometry.txt"),
-      per_scan_(folder / "per_scan.csv") {
-  if (T_camera_lidar_) trajectory_camera_.emplace(folder / "trajectory_camera.txt");
-  std::string header(kPerScanHeader);
-  for (const std::string_view stage : kStageNames) header += fmt::format(",{}_ms", stage);
-  per_scan_.write_row(header + ",problem");
-  if (config.scene.write) scene_.emplace(folder / "scene.mlo", scene_meta(dataset, config), config.scene);
-  if (!with_objects) return;
-  objects_.emplace(folder / "objects.csv");
-  objects_->write_row(object_table_header());
+      object_trajectories_(std::move(state.object_trajectories)) {
+  for (const auto& [name, size] : state.sizes) files_.try_emplace(name, folder / name, size);
+  if (state.scene) scene_.emplace(folder / kScene, std::move(*state.scene), config.scene);
+}
+
+RunOutputState RunOutput::state() {
+  RunOutputState state{.object_trajectories = object_trajectories_};
+  for (const auto& [name, file] : files_) state.sizes[name] = file.size();
+  if (scene_) state.scene = scene_->state();
+  return state;
+}
+
+bool RunOutput::with_objects() const {
+  return files_.contains(kObjects);
+}
+
+void RunOutput::write_row(const char* file, const std::string& row) {
+  files_.at(file).append(row + '\n');
 }
 
 void RunOutput::write_poses(const SE3& T_map_lidar, const SE3& T_odom_lidar) {
-  trajectory_.write_row(kitti_row(T_map_lidar));
-  odometry_.write_row(kitti_row(T_odom_lidar));
-  if (trajectory_camera_) {
-    trajectory_camera_->write_row(kitti_row(*T_camera_lidar_ * T_map_lidar * T_camera_lidar_->inverse()));
+  write_row(kTrajectory, kitti_row(T_map_lidar));
+  write_row(kOdometry, kitti_row(T_odom_lidar));
+  if (T_camera_lidar_) {
+    write_row(kTrajectoryCamera, kitti_row(*T_camera_lidar_ * T_map_lidar * T_camera_lidar_->inverse()));
   }
 }
 
 void RunOutput::write(FrameResult result) {
   if (scene_) scene_->wait();  // so that it is never more than one scan behind
   write_poses(result.T_map_lidar, result.T_odom_lidar);
-  trajectory_tum_.write_row(tum_row(result.stamp_s, result.T_map_lidar));
-  per_scan_.write_row(per_scan_row(result));
-  if (objects_) write_objects(result);
+  write_row(kTrajectoryTum, tum_row(result.stamp_s, result.T_map_lidar));
+  write_row(kPerScan, per_scan_row(result));
+  if (with_objects()) write_objects(result);
   write_object_maps(result.finished_objects);
   if (scene_) scene_->write(std::move(result));
 }
@@ -110,7 +123,7 @@ void RunOutput::write_objects(const FrameResult& result) {
   const ObjectRow place{result.frame, result.stamp_s};
   for (const TrackedObject& object : result.objects) {
     if (!object.reported) continue;
-    objects_->write_row(object_table_row(place, object));
+    write_row(kObjects, object_table_row(place, object));
     object_trajectories_.add(place, object);
   }
 }
@@ -125,7 +138,7 @@ void RunOutput::write_object_maps(std::span<const MappedObject> objects) const {
 }
 
 void RunOutput::write_object_trajectories() const {
-  if (objects_) object_trajectories_.write(folder_ / "object_trajectories");
+  if (with_objects()) object_trajectories_.write(folder_ / "object_trajectories");
 }
 
 void RunOutput::write_skipped(std::size_t frame, double stamp_s, const std::string& problem,
@@ -136,7 +149,7 @@ void RunOutput::write_skipped(std::size_t frame, double stamp_s, const std::stri
   for (const char c : problem) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   const auto columns = static_cast<std::size_t>(
       std::count(kPerScanHeader.begin(), kPerScanHeader.end(), ',') + 1 + static_cast<long>(kNumStages));
-  per_scan_.write_row(fmt::format("{},,skipped{}\"{}\"", frame, std::string(columns - 2, ','), quoted));
+  write_row(kPerScan, fmt::format("{},,skipped{}\"{}\"", frame, std::string(columns - 2, ','), quoted));
 }
 
 void RunOutput::write_map(std::span<const MapPoint> points) {

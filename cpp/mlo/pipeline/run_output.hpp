@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "mlo/core/types.hpp"
+#include "mlo/io/append_file.hpp"
 #include "mlo/io/dataset.hpp"
 #include "mlo/pipeline/config.hpp"
 #include "mlo/pipeline/frame_result.hpp"
@@ -14,6 +16,15 @@
 #include "mlo/pipeline/scene_output.hpp"
 
 namespace mlo {
+
+/// How far the files of a run are written (core/archive.hpp).
+struct RunOutputState {
+  std::map<std::string, std::uint64_t> sizes = {};  ///< of the text files, by name
+  ObjectTrajectories object_trajectories = {};
+  std::optional<SceneWriterState> scene = {};
+
+  static void archive(auto& self, auto& bytes) { bytes(self.sizes, self.object_trajectories, self.scene); }
+};
 
 /// The files of one run. Rows are written scan by scan and are on disk when a run is killed.
 class RunOutput {
@@ -24,6 +35,9 @@ class RunOutput {
   /// @throws InputError when the folder or a file cannot be written
   RunOutput(const std::filesystem::path& folder, const Dataset& dataset, const PipelineConfig& config,
             bool with_objects);
+  /// Goes on with the files of an earlier run where it was; what they have beyond that is cut off.
+  RunOutput(const std::filesystem::path& folder, const Dataset& dataset, const PipelineConfig& config,
+            RunOutputState state);
 
   /// trajectory.txt, trajectory_tum.txt, odometry.txt, trajectory_camera.txt, a row of per_scan.csv, and the
   /// scene.
@@ -47,27 +61,19 @@ class RunOutput {
   /// Ends the scene.
   void finish();
 
+  /// With all that was given so far.
+  RunOutputState state();
+
  private:
   void write_objects(const FrameResult& result);
   void write_poses(const SE3& T_map_lidar, const SE3& T_odom_lidar);
-
-  /// A text file that is flushed after each row, so that errors surface at the row that met them.
-  struct TextFile {
-    std::filesystem::path path;
-    std::ofstream stream;
-
-    explicit TextFile(const std::filesystem::path& file);
-    void write_row(const std::string& row);
-  };
+  /// Each row is with the system at once, so that errors surface at the row that met them.
+  void write_row(const char* file, const std::string& row);
+  bool with_objects() const;
 
   std::filesystem::path folder_;
   std::optional<SE3> T_camera_lidar_;
-  TextFile trajectory_;
-  TextFile trajectory_tum_;
-  TextFile odometry_;
-  TextFile per_scan_;
-  std::optional<TextFile> trajectory_camera_;
-  std::optional<TextFile> objects_;
+  std::map<std::string, AppendFile> files_;  // by name
   ObjectTrajectories object_trajectories_;
   std::optional<SceneOutput> scene_;
 };

@@ -95,6 +95,14 @@ SceneCloud scene_cloud(const FrameResult& result, double voxel_m) {
 SceneOutput::SceneOutput(const std::filesystem::path& file, const SceneMeta& meta, const SceneConfig& config)
     : config_(config), writer_(file, meta, config) {}
 
+SceneOutput::SceneOutput(const std::filesystem::path& file, SceneWriterState state, const SceneConfig& config)
+    : config_(config), writer_(file, std::move(state), config) {}
+
+SceneWriterState SceneOutput::state() {
+  wait();
+  return writer_.state();
+}
+
 void SceneOutput::wait() {
   if (writing_.valid()) writing_.get();
 }

@@ -24,6 +24,9 @@ class SceneOutput {
   /// @throws InputError when the file cannot be written; so do the calls below, also for the scan before
   SceneOutput(const std::filesystem::path& file, const SceneMeta& meta, const SceneConfig& config);
 
+  /// Goes on with a scene where an output was; what the file has beyond that is cut off.
+  SceneOutput(const std::filesystem::path& file, SceneWriterState state, const SceneConfig& config);
+
   void write(FrameResult result);
   /// @param stamp_s  when the scan should have been taken
   void write_skipped(std::size_t frame, double stamp_s, const std::string& problem,
@@ -32,6 +35,8 @@ class SceneOutput {
   void finish();
   /// Until all that was given is in the file.
   void wait();
+  /// With all that was given so far.
+  SceneWriterState state();
 
  private:
   SceneConfig config_;

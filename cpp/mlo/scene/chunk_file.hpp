@@ -51,6 +51,8 @@ class ChunkFileWriter {
   void append(ChunkInfo info, std::string_view payload);
   /// Writes the index; nothing can be appended after it.
   void finish();
+  /// What was appended, for another writer to go on after it.
+  const std::vector<IndexedChunk>& chunks() const { return chunks_; }
 
  private:
   AppendFile file_;

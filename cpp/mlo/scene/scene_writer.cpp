@@ -1,5 +1,7 @@
 #include "mlo/scene/scene_writer.hpp"
 
+#include <utility>
+
 #include "mlo/core/archive.hpp"
 #include "mlo/core/bytes.hpp"
 #include "mlo/core/voxel_grid.hpp"
@@ -42,6 +44,11 @@ SceneWriter::SceneWriter(const std::filesystem::path& path, const SceneMeta& met
   bytes(meta);
   file_.append({.type = ChunkType::meta}, bytes.bytes());
 }
+
+SceneWriter::SceneWriter(const std::filesystem::path& path, SceneWriterState state, const SceneConfig& config)
+    : file_(path, config.compression_level, std::move(state.chunks)),
+      last_stamp_s_(state.last_stamp_s),
+      tile_checksums_(std::move(state.tile_checksums)) {}
 
 void SceneWriter::write(const SceneScan& scan, const SceneCloud* cloud) {
   ChunkInfo info{.type = ChunkType::cloud, .number = scan.frame};

@@ -33,6 +33,8 @@ class ObjectFilter {
   using Vector4d = Eigen::Matrix<double, 4, 1>;
   using Matrix4d = Eigen::Matrix<double, 4, 4>;
 
+  /// To be read from an archive.
+  ObjectFilter() = default;
   /// Starts from one measurement with unknown velocity.
   /// @param wheeled  moves along its heading only
   ObjectFilter(const BoxMeasurement& first, bool wheeled, const ObjectMotionConfig& config);
@@ -68,6 +70,11 @@ class ObjectFilter {
   const Eigen::Matrix2d& yaw_covariance() const { return yaw_covariance_; }
   double height_variance_m2() const { return height_.variance; }
 
+  static void archive(auto& self, auto& bytes) {  // core/archive.hpp
+    bytes(self.planar_, self.height_, self.size_, self.yaw_, self.yaw_covariance_, self.flips_,
+          self.wheeled_);
+  }
+
  private:
   static constexpr int kStanding = 0;
   static constexpr int kMoving = 1;
@@ -76,11 +83,13 @@ class ObjectFilter {
     Vector4d state = Vector4d::Zero();  ///< x, y [m], vx, vy [m/s]
     Matrix4d covariance = Matrix4d::Zero();
     double probability = 0.5;
+    static void archive(auto& self, auto& bytes) { bytes(self.state, self.covariance, self.probability); }
   };
   struct Scalar {
     double value = 0.0;
     double variance = 0.0;
     void update(double measured, double measured_variance);
+    static void archive(auto& self, auto& bytes) { bytes(self.value, self.variance); }
   };
 
   Eigen::Vector2d mixed() const;

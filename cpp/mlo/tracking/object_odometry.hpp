@@ -39,6 +39,8 @@ struct ObjectPrior {
 /// and boxes of the last sighting and the present one.
 class ObjectOdometry {
  public:
+  /// To be read from an archive.
+  ObjectOdometry() = default;
   /// The first pose is that of the box.
   ObjectOdometry(const ObjectSighting& first, const SweepTiming& timing, const SgfConfig& config);
 
@@ -55,6 +57,11 @@ class ObjectOdometry {
   const Eigen::Vector3d& moved_map_m() const { return moved_map_m_; }
   /// Front becomes back.
   void turn_round();
+
+  static void archive(auto& self, auto& bytes) {  // core/archive.hpp
+    bytes(self.T_map_object_, self.moved_map_m_, self.T_map_lidar_, self.last_box_lidar_,
+          self.points_object_);
+  }
 
  private:
   std::vector<ShapedPoint> shape(const ObjectSighting& sighting, int scans_since,

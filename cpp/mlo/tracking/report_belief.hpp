@@ -47,6 +47,7 @@ class UsualCarWidth {
     constexpr int kEnough = 20;
     return count_ < kEnough ? 0.0 : width_m - sum_m_ / count_;
   }
+  static void archive(auto& self, auto& bytes) { bytes(self.count_, self.sum_m_); }  // core/archive.hpp
 
  private:
   int count_ = 0;

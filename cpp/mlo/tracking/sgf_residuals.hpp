@@ -46,6 +46,7 @@ struct ShapedPoint {
   Eigen::Vector3d p_lidar = Eigen::Vector3d::Zero();
   double share = 1.0;  ///< part of the motion H that lies between its time and the previous reference time
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< [m^2]
+  static void archive(auto& self, auto& bytes) { bytes(self.p_lidar, self.share, self.covariance); }
 };
 
 /// Points of one object, thinned to at most max_points, with the covariances of their neighbourhoods, whose

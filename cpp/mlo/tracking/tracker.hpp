@@ -72,11 +72,17 @@ class Tracker {
   /// Pose of the lidar at the last scan, as given or estimated.
   const SE3& T_map_lidar() const { return T_map_lidar_; }
 
+  /// All but the configuration (core/archive.hpp).
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.tracks_, self.usual_width_, self.T_map_lidar_, self.last_increment_, self.started_,
+          self.next_id_);
+  }
+
  private:
   struct Track {
-    long id;
-    ObjectClass object_class;
-    ObjectFilter filter;
+    long id = 0;
+    ObjectClass object_class = ObjectClass::car;
+    ObjectFilter filter = {};
     TrackState state = TrackState::tentative;
     double existence = 0.0;
     double best_logit = 0.0;  ///< of its detections
@@ -90,6 +96,11 @@ class Tracker {
     std::size_t num_points = 0;
     std::optional<ObjectOdometry> odometry = {};
     PoseEstimate relative_motion = {};
+    static void archive(auto& self, auto& bytes) {
+      bytes(self.id, self.object_class, self.filter, self.state, self.existence, self.best_logit, self.logit,
+            self.belief, self.age, self.hits, self.misses, self.detection, self.misses_before,
+            self.num_points, self.odometry, self.relative_motion);
+    }
   };
 
   /// Detections as the tracks see them; index leads to the span that was given.

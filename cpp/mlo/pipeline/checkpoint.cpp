@@ -1,0 +1,70 @@
+#include "mlo/pipeline/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include "mlo/core/archive.hpp"
+#include "mlo/core/bytes.hpp"
+#include "mlo/io/atomic_file.hpp"
+#include "mlo/io/text.hpp"
+#include "mlo/scene/compression.hpp"
+
+namespace mlo {
+namespace {
+
+constexpr std::string_view kMagic = "MLOSTATE";
+constexpr int kCompressionLevel = 1;
+
+struct Content {
+  std::string owner;
+  std::uint64_t size = 0;  // of the state
+  std::uint32_t checksum = 0;
+  std::string compressed;
+
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.owner, self.size, self.checksum, self.compressed);
+  }
+};
+
+// The first lines in which two texts differ.
+std::pair<std::string, std::string> difference(std::string_view a, std::string_view b) {
+  for (std::size_t i = 0, k = 0;;) {
+    const std::optional<TextLine> line_a = line_at(a, i);
+    const std::optional<TextLine> line_b = line_at(b, k);
+    const std::string text_a(line_a ? line_a->text : "");
+    const std::string text_b(line_b ? line_b->text : "");
+    if (text_a != text_b || !line_a || !line_b) return {text_a, text_b};
+    i = line_a->next_offset;
+    k = line_b->next_offset;
+  }
+}
+
+}  // namespace
+
+void write_checkpoint(const std::filesystem::path& file, const std::string& owner, const std::string& state) {
+  ArchiveWriter bytes;
+  bytes(Content{owner, state.size(), crc32(state), compress(state, kCompressionLevel)});
+  AtomicFile whole(file);
+  whole.write(kMagic);
+  whole.write(bytes.bytes());
+  whole.commit();
+}
+
+std::optional<std::string> read_checkpoint(const std::filesystem::path& file, const std::string& owner) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const std::string bytes = read_file(file);
+  const auto fail = [&](const std::string& problem) {
+    throw InputError(fmt::format("{}: {}; run again without --resume", file.string(), problem));
+  };
+  if (!bytes.starts_with(kMagic)) fail("is no state of a run");
+  Content content;
+  ArchiveReader(std::string_view(bytes).substr(kMagic.size()), file.string())(content);
+  if (content.owner != owner) {
+    const auto [then, now] = difference(content.owner, owner);
+    fail(fmt::format("belongs to another run: it has '{}', this one '{}'", then, now));
+  }
+  std::string state = decompress(content.compressed, content.size, file.string());
+  if (crc32(state) != content.checksum) fail("is damaged: its checksum is wrong");
+  return state;
+}
+
+}  // namespace mlo
