@@ -23,7 +23,8 @@ ply, pcd    the static map: x y z intensity label
 kitti       the robot's trajectory, a KITTI row for each frame
 tum         the robot's trajectory, stamped
 csv         the objects in all scans, as objects.csv
-mcap        everything, for Foxglove: /tf, /pose, /trajectory, /points, /objects, /map
+mcap        everything, for Foxglove: /tf, /pose, /trajectory, /points, /objects, /map,
+            /object_clouds (one message for each object, in its own frame: show them with an infinite decay time)
 
 With --object: ply and pcd give what was seen of that object, in its own frame; kitti and tum its trajectory.
 

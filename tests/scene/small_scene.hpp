@@ -41,6 +41,13 @@ inline std::vector<MapPoint> small_map() {
   return points;
 }
 
+/// Of object 3.
+inline SceneCloud small_shape() {
+  SceneCloud shape;
+  for (int n = 0; n < 10; ++n) shape.add({{0.2F * static_cast<float>(n), -1.0F, 0.5F}}, MapLabel::object, 3);
+  return shape;
+}
+
 /// Writes such a scene; without an end, as a killed run leaves it.
 inline void write_small_scene(const std::filesystem::path& path, std::size_t num_scans,
                               bool finished = true) {
@@ -51,6 +58,7 @@ inline void write_small_scene(const std::filesystem::path& path, std::size_t num
   }
   if (!finished) return;
   writer.write_map(small_map());
+  writer.write_object(3, small_shape());
   writer.finish();
 }
 

@@ -114,8 +114,10 @@ TEST(Mcap, TheReferenceReaderFindsAllChannels) {
   expect_topic("/points", "PointCloud", 4);
   expect_topic("/objects", "SceneUpdate", 4);
   expect_topic("/map", "PointCloud", 1);
+  expect_topic("/object_clouds", "PointCloud", 1);
   EXPECT_EQ(topics.at("/points").at("points"), 4 * test::small_cloud(0).points.size());
   EXPECT_EQ(topics.at("/map").at("points"), test::small_map().size());
+  EXPECT_EQ(topics.at("/object_clouds").at("points"), test::small_shape().points.size());
   EXPECT_EQ(topics.at("/objects").at("boxes"), 4);
   EXPECT_EQ(found->at("start_ns"), "100000000000");
   EXPECT_EQ(found->at("end_ns"), "100300000000");

@@ -33,8 +33,20 @@ TEST_F(Export, AnObjectsTrajectory) {
   EXPECT_THROW(object_trajectory(scene(), 4), InputError);
 }
 
+TEST_F(Export, AnObjectsCloudIsItsShape) {
+  const std::vector<MapPoint> points = object_cloud(scene(), 3, 0.05);
+  const SceneCloud shape = test::small_shape();
+  ASSERT_EQ(points.size(), shape.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_LT((points[i].p_map - shape.points[i].p).norm(), 0.001F);
+    EXPECT_EQ(points[i].label, MapLabel::object);
+  }
+  EXPECT_EQ(object_cloud(scene(), 3, 10.0).size(), 1U);
+}
+
 // The same point of the object would be one voxel; here the robot drives past a point fixed in its own frame.
-TEST_F(Export, AnObjectsCloudIsInItsOwnFrame) {
+TEST_F(Export, WithoutAShapeAnObjectsCloudIsWhatTheScansSaw) {
+  test::write_small_scene(folder_.path() / "scene.mlo", 4, false);
   const std::vector<MapPoint> points = object_cloud(scene(), 3, 0.05);
   ASSERT_EQ(points.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {

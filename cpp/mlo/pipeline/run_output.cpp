@@ -128,12 +128,13 @@ void RunOutput::write_objects(const FrameResult& result) {
   }
 }
 
-void RunOutput::write_object_maps(std::span<const MappedObject> objects) const {
+void RunOutput::write_object_maps(std::span<const MappedObject> objects) {
   for (const MappedObject& object : objects) {
     if (object.points_object.empty() || !object_trajectories_.contains(object.id)) continue;
     std::vector<MapPoint> points;
     for (const Eigen::Vector3f& p : object.points_object) points.push_back({p, 0.0F, MapLabel::object});
     write_ply(create_folder(folder_ / "object_maps") / fmt::format("{:05}.ply", object.id), points);
+    if (scene_) scene_->write_object(object);
   }
 }
 

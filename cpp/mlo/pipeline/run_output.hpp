@@ -49,8 +49,8 @@ class RunOutput {
   void write_skipped(std::size_t frame, double stamp_s, const std::string& problem,
                      const PredictedPoses& predicted);
 
-  /// object_maps/ID.ply, in the object's own frame, of those that were reported.
-  void write_object_maps(std::span<const MappedObject> objects) const;
+  /// object_maps/ID.ply, in the object's own frame, of those that were reported, and the same in the scene.
+  void write_object_maps(std::span<const MappedObject> objects);
 
   /// object_trajectories/ID.txt, of all objects that were reported.
   void write_object_trajectories() const;

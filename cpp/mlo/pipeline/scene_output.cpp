@@ -129,6 +129,13 @@ void SceneOutput::write_map(std::span<const MapPoint> points) {
   writer_.write_map(points);
 }
 
+void SceneOutput::write_object(const MappedObject& object) {
+  wait();
+  SceneCloud cloud;
+  for (const Eigen::Vector3f& p : object.points_object) cloud.add({p, 0.0F}, MapLabel::object, object.id);
+  writer_.write_object(object.id, cloud);
+}
+
 void SceneOutput::finish() {
   wait();
   writer_.finish();

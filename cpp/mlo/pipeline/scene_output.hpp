@@ -32,6 +32,7 @@ class SceneOutput {
   void write_skipped(std::size_t frame, double stamp_s, const std::string& problem,
                      const PredictedPoses& predicted);
   void write_map(std::span<const MapPoint> points);
+  void write_object(const MappedObject& object);
   void finish();
   /// Until all that was given is in the file.
   void wait();

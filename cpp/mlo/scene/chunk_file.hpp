@@ -14,12 +14,12 @@
 // (docs/scene_format.md).
 namespace mlo {
 
-enum class ChunkType : std::uint32_t { meta = 1, scan = 2, cloud = 3, map_tile = 4, index = 5 };
+enum class ChunkType : std::uint32_t { meta = 1, scan = 2, cloud = 3, map_tile = 4, index = 5, object = 6 };
 
 /// What stands in front of a chunk's bytes.
 struct ChunkInfo {
   ChunkType type = ChunkType::meta;
-  std::uint64_t number = 0;  ///< of the frame or the tile
+  std::uint64_t number = 0;  ///< of the frame, the tile or the object
   double first_stamp_s = 0.0;
   double last_stamp_s = 0.0;
   std::uint64_t raw_bytes = 0;     ///< without compression

@@ -144,7 +144,7 @@ ordered_json color_json(double r, double g, double b, double a) {
   return {{"r", r}, {"g", g}, {"b", b}, {"a", a}};
 }
 
-ordered_json transform_json(const char* parent, const char* child, const SE3& T_parent_child,
+ordered_json transform_json(std::string_view parent, std::string_view child, const SE3& T_parent_child,
                             double stamp_s) {
   return {{"timestamp", time_json(stamp_s)},
           {"parent_frame_id", parent},
@@ -242,12 +242,19 @@ std::string poses_in_frame(std::span<const SE3> poses, std::string_view frame, d
   return ordered_json{{"timestamp", time_json(stamp_s)}, {"frame_id", frame}, {"poses", list}}.dump();
 }
 
+std::string object_frame(long id) {
+  return fmt::format("object_{}", id);
+}
+
 std::string frame_transforms(const SceneScan& scan) {
   const SE3 T_map_odom = scan.T_map_lidar * scan.T_odom_lidar.inverse();
-  return ordered_json{{"transforms",
-                       {transform_json("map", "odom", T_map_odom, scan.stamp_s),
-                        transform_json("odom", "lidar", scan.T_odom_lidar, scan.stamp_s)}}}
-      .dump();
+  ordered_json transforms = ordered_json::array();
+  transforms.push_back(transform_json("map", "odom", T_map_odom, scan.stamp_s));
+  transforms.push_back(transform_json("odom", "lidar", scan.T_odom_lidar, scan.stamp_s));
+  for (const SceneObject& object : scan.objects) {
+    transforms.push_back(transform_json("map", object_frame(object.id), object.T_map_object, scan.stamp_s));
+  }
+  return ordered_json{{"transforms", transforms}}.dump();
 }
 
 std::string scene_update(const SceneScan& scan, std::span<const long> gone) {

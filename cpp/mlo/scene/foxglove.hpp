@@ -23,7 +23,9 @@ std::string point_cloud(const SceneCloud& cloud, std::string_view frame, double 
 std::string pose_in_frame(const SE3& pose, std::string_view frame, double stamp_s);
 /// foxglove.PosesInFrame
 std::string poses_in_frame(std::span<const SE3> poses, std::string_view frame, double stamp_s);
-/// foxglove.FrameTransforms: map to odom to lidar.
+/// Name of the frame of an object.
+std::string object_frame(long id);
+/// foxglove.FrameTransforms: map to odom to lidar, and map to each object.
 std::string frame_transforms(const SceneScan& scan);
 /// foxglove.SceneUpdate: a box, a name and an arrow of one second's motion for each object.
 /// @param gone  ids that were there before and are no more

@@ -1,6 +1,7 @@
 #include "mlo/scene/scene_export.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -76,6 +77,14 @@ PoseList object_trajectory(const SceneFile& scene, long id) {
 
 std::vector<MapPoint> object_cloud(const SceneFile& scene, long id, double voxel_m) {
   std::vector<MapPoint> points;
+  const auto thinned = [&] {
+    return downsample_first<MapPoint>(points, static_cast<float>(voxel_m),
+                                      [](const MapPoint& point) { return point.p_map; });
+  };
+  for (const ScenePoint& point : scene.object(id).points) {
+    points.push_back({point.p, point.intensity, MapLabel::object});
+  }
+  if (!points.empty()) return thinned();
   bool seen = false;
   for (std::size_t i = 0; i < scene.num_scans(); ++i) {
     const SceneScan scan = scene.scan(i);
@@ -90,8 +99,7 @@ std::vector<MapPoint> object_cloud(const SceneFile& scene, long id, double voxel
     });
   }
   if (!seen) fail_without_object(scene, id);
-  return downsample_first<MapPoint>(points, static_cast<float>(voxel_m),
-                                    [](const MapPoint& point) { return point.p_map; });
+  return thinned();
 }
 
 void export_mcap(const SceneFile& scene, const std::filesystem::path& path) {
@@ -105,6 +113,7 @@ void export_mcap(const SceneFile& scene, const std::filesystem::path& path) {
   const McapWriter::Channel points = add("/points", "PointCloud");
   const McapWriter::Channel objects = add("/objects", "SceneUpdate");
   const McapWriter::Channel map = add("/map", "PointCloud");
+  const McapWriter::Channel shapes = add("/object_clouds", "PointCloud");
   if (scene.num_scans() > 0) {
     const double start_s = scene.stamp_s(0);
     const std::uint64_t start_ns = foxglove::to_ns(start_s);
@@ -113,12 +122,20 @@ void export_mcap(const SceneFile& scene, const std::filesystem::path& path) {
     writer.write(map, start_ns, foxglove::point_cloud(to_cloud(scene.map()), "map", start_s));
   }
   std::vector<SceneObject> before;
+  std::set<long> known;
   for (std::size_t i = 0; i < scene.num_scans(); ++i) {
     SceneScan scan = scene.scan(i);
     const std::uint64_t stamp_ns = foxglove::to_ns(scan.stamp_s);
     writer.write(transforms, stamp_ns, foxglove::frame_transforms(scan));
     writer.write(pose, stamp_ns, foxglove::pose_in_frame(scan.T_map_lidar, "map", scan.stamp_s));
     writer.write(objects, stamp_ns, foxglove::scene_update(scan, missing(before, scan)));
+    for (const SceneObject& object : scan.objects) {
+      const bool is_new = known.insert(object.id).second;
+      const SceneCloud shape = is_new ? scene.object(object.id) : SceneCloud();
+      if (shape.points.empty()) continue;
+      writer.write(shapes, stamp_ns,
+                   foxglove::point_cloud(shape, foxglove::object_frame(object.id), scan.stamp_s));
+    }
     const SceneCloud cloud = scene.cloud(i);
     if (!cloud.points.empty())
       writer.write(points, stamp_ns, foxglove::point_cloud(cloud, "lidar", scan.stamp_s));

@@ -20,6 +20,9 @@ SceneFile::SceneFile(const std::filesystem::path& path) : file_(path) {
       case ChunkType::map_tile:
         tiles_.insert_or_assign(chunk.info.number, chunk);
         break;
+      case ChunkType::object:
+        objects_.insert_or_assign(static_cast<long>(chunk.info.number), chunk);
+        break;
       case ChunkType::index:
         break;
     }
@@ -52,6 +55,11 @@ std::vector<MapPoint> SceneFile::map() const {
     });
   }
   return points;
+}
+
+SceneCloud SceneFile::object(long id) const {
+  const auto found = objects_.find(id);
+  return found == objects_.end() ? SceneCloud() : decode_cloud(file_.payload(found->second), source());
 }
 
 std::uint64_t SceneFile::stored_bytes(ChunkType type) const {

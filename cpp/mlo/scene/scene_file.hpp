@@ -30,6 +30,10 @@ class SceneFile {
   /// The static map when it was last saved.
   std::vector<MapPoint> map() const;
 
+  /// The shape of an object, in its own frame; empty where the file has none: the object may still have been
+  /// in sight when the run was killed.
+  SceneCloud object(long id) const;
+
   /// Bytes of all chunks of a type, as stored.
   std::uint64_t stored_bytes(ChunkType type) const;
   std::uint64_t size() const { return file_.size(); }
@@ -45,6 +49,7 @@ class SceneFile {
   std::vector<IndexedChunk> scans_;
   std::map<std::uint64_t, IndexedChunk> clouds_;  // by frame
   std::map<std::uint64_t, IndexedChunk> tiles_;   // the last of each number
+  std::map<long, IndexedChunk> objects_;          // by id
 };
 
 /// Poses of the robot at the stamps of all scans, with their frames.

@@ -13,7 +13,7 @@ namespace {
 constexpr float kTile_m = 20.0F;
 // Powers of two, so that coordinates are exact in single precision.
 constexpr double kCloudStep_m = 1.0 / 256.0;
-constexpr double kMapStep_m = 1.0 / 1024.0;
+constexpr double kMapStep_m = 1.0 / 1024.0;  // of objects, too
 
 std::uint64_t tile_number(const Eigen::Vector3f& p_map) {
   const VoxelKey key = voxel_key(p_map, 1.0F / kTile_m);
@@ -78,6 +78,14 @@ void SceneWriter::write_map(std::span<const MapPoint> points) {
                   .last_stamp_s = last_stamp_s_},
                  bytes);
   }
+}
+
+void SceneWriter::write_object(long id, const SceneCloud& cloud) {
+  file_.append({.type = ChunkType::object,
+                .number = static_cast<std::uint64_t>(id),
+                .first_stamp_s = last_stamp_s_,
+                .last_stamp_s = last_stamp_s_},
+               encode_cloud(cloud, Eigen::Vector3d::Zero(), kMapStep_m));
 }
 
 void SceneWriter::finish() {

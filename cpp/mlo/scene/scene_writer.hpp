@@ -33,6 +33,8 @@ class SceneWriter {
   void write(const SceneScan& scan, const SceneCloud* cloud);
   /// The static map as it is now; replaces the one before. Tiles that did not change are not written again.
   void write_map(std::span<const MapPoint> points);
+  /// The shape of an object: its points in its own frame, all of one group; replaces the one before.
+  void write_object(long id, const SceneCloud& cloud);
   /// Ends the file with its index.
   void finish();
   SceneWriterState state() const { return {file_.chunks(), last_stamp_s_, tile_checksums_}; }
