@@ -28,6 +28,8 @@ struct Options {
   std::string frames;
   std::string roi;
   std::string detector;
+  std::filesystem::path map;
+  std::vector<double> start;
   RunOptions run;
   int threads = 0;
   ConfigArguments config;
@@ -109,6 +111,11 @@ void run_command(Options options) {
   if (!options.detections.empty()) {
     detections = read_detections(options.detections, dataset.calibration, {.sequence = dataset.sequence});
   }
+  if (!options.map.empty()) {
+    std::optional<Eigen::Vector4d> start;
+    if (!options.start.empty()) start.emplace(options.start.data());
+    options.run.map = start_in_map(options.map, start);
+  }
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
@@ -158,6 +165,17 @@ void add_run(CLI::App& program) {
       ->type_name("A:B");
   command->add_option("--roi", options->roi, "Region of interest, short for --set input.roi=...")
       ->check(CLI::IsMember({"full", "camera"}));
+  auto* map = command->add_option("--map", options->map,
+                                  "Localise in the map of an earlier run (scene.mlo, .ply, .pcd); make none");
+  map->type_name("FILE");
+  command
+      ->add_option(
+          "--start", options->start,
+          "Where in that map, within 5 m and 15 degrees [m, m, m, deg]; default: where its run began")
+      ->delimiter(',')
+      ->expected(4)
+      ->type_name("X,Y,Z,YAW")
+      ->needs(map);
   command->add_flag("--resume", options->run.resume,
                     "Go on where a run with the same DIR, scans and settings was stopped or killed");
   command
@@ -182,7 +200,8 @@ Examples:
   mlo run kitti_raw/2011_09_26/2011_09_26_drive_0005_sync --out out/0005
   mlo run kitti_raw/2011_09_26/2011_09_26_drive_0005_sync --detections boxes.csv --out out/0005
   mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine
-  mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine --resume)");
+  mlo run my_scans --preset vlp16 --frames 0:499 --out out/mine --resume
+  mlo run second_visit --map out/mine/scene.mlo --start 12.5,-3,0,90 --out out/second)");
   command->callback([options] { run_command(*options); });
 }
 

@@ -182,12 +182,16 @@ class ArchiveReader {
     values.assign(get_length(1), T());
     for (T& value : values) get(value);
   }
+  template <class A, class B>
+  void get(std::pair<A, B>& pair) {
+    (*this)(pair.first, pair.second);
+  }
   template <KeyedMap T>
   void get(T& values) {
     values.clear();
     for (std::size_t i = get_length(1); i > 0; --i) {
       std::pair<typename T::key_type, typename T::mapped_type> entry;
-      (*this)(entry.first, entry.second);
+      get(entry);
       values.insert(std::move(entry));
     }
   }

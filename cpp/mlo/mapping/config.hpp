@@ -202,11 +202,32 @@ struct DynamicCheckConfig {
   }
 };
 
+/// The search for the first pose in the map of an earlier run.
+struct PlaceSearchConfig {
+  double radius_m = 5.0;
+  double yaw_deg = 15.0;
+  double step_m = 0.75;
+  double yaw_step_deg = 2.5;
+  double min_share = 0.4;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("radius_m", radius_m, between(0.0, 100.0),
+          "how far from the given start is looked: reach against time [m]");
+    visit("yaw_deg", yaw_deg, between(0.0, 180.0), "how far to both sides of its heading [deg]");
+    visit("step_m", step_m, between(0.1, 10.0), "between the starts that are tried [m]");
+    visit("yaw_step_deg", yaw_step_deg, between(0.1, 90.0), "between their headings [deg]");
+    visit("min_share", min_share, between(0.0, 1.0),
+          "part of the scan that has to lie on the map: higher asks for a map without changes");
+  }
+};
+
 struct MappingConfig {
   LocalMapConfig local_map;
   RefinementConfig refinement;
   StaticMapConfig static_map;
   DynamicCheckConfig dynamic_check;
+  PlaceSearchConfig place_search;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -214,6 +235,7 @@ struct MappingConfig {
     visit.group("refinement", refinement, "Scan-to-map registration (paper, section III-D-2).");
     visit.group("static_map", static_map, "The long-term map that is saved.");
     visit.group("dynamic_check", dynamic_check, "Which objects move (paper, section III-D-1).");
+    visit.group("place_search", place_search, "The first pose in the map of an earlier run (run --map).");
   }
 };
 

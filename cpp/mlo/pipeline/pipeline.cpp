@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mlo/core/parallel.hpp"
-#include "mlo/mapping/refinement.hpp"
+#include "mlo/mapping/place_search.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
 #include "mlo/perception/perceive.hpp"
 #include "mlo/pipeline/prepare.hpp"
@@ -102,6 +102,12 @@ Pipeline::Pipeline(const PipelineConfig& config)
       trajectories_(config.mapping.dynamic_check, config.mapping.refinement),
       tracker_(config.tracking) {}
 
+Pipeline::Pipeline(const PipelineConfig& config, std::span<const MapPoint> map, const SE3& T_map_lidar_start)
+    : Pipeline(config) {
+  saved_map_ = SavedMap(map);
+  state_.T_map_lidar = T_map_lidar_start;
+}
+
 FrameResult Pipeline::process(const Scan& scan, std::span<const Detection> detections) {
   return process_scan(scan, detections);
 }
@@ -133,7 +139,7 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
       times, Stage::odometry, [&] { return estimate_increment(seen, prediction, sweep, prepared.frame); });
   const SE3 T_odometry = ego.increment.usable() ? ego.increment.T_target_source : prediction;
   const SE3 T_start = agrees(T_odometry, prediction, config_.motion) ? prediction : T_odometry;
-  result.first = state_.empty;
+  result.first = state_.empty && saved_map_.empty();
   result.odometry = ego.increment;
   result.consistency = ego.consistency;
   const bool motion_known = state_.motion_known || ego.increment.usable();
@@ -145,6 +151,7 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
   const SE3 increment = sweep_increment(T_odometry, T_map_lidar);
   const SweepMotion motion = SweepMotion::from_increment(increment, sweep);
   timed(times, Stage::tracking, [&] {
+    if (!state_.placed && !result.localised()) return;
     result.objects = track(prepared, seen, T_map_lidar, sweep);
     find_moving(seen, motion, T_map_lidar, result.objects);
     result.finished_objects = trajectories_.take_finished();
@@ -213,7 +220,7 @@ std::vector<Pipeline::ObjectAtRest> Pipeline::find_objects_at_rest(const Percept
 PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_current, bool motion_known,
                                    const SweepTiming& timing) {
   PoseEstimate refined;
-  if (state_.empty) return refined;
+  if (state_.empty && saved_map_.empty()) return refined;
   const RefinementConfig& config = config_.mapping.refinement;
   const bool separate = config_.mapping.local_map.separate_classes;
   std::vector<FeaturePoint> ground;
@@ -234,6 +241,7 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
     terms.push_back({object.points, object.map, ExpectedShape::plane});
   }
   RefinementGuess guess{state_.T_map_lidar, T_previous_current, motion_known, timing};
+  if (!saved_map_.empty()) return refine_in_saved_map(terms, guess);
   refined = refine(terms, guess, config);
 
   if (state_.unplaced && refined.usable()) {
@@ -249,6 +257,26 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
     refined = refine(terms, guess, config);
   }
   return refined;
+}
+
+PoseEstimate Pipeline::refine_in_saved_map(std::span<const RefinementTerm> terms,
+                                           const RefinementGuess& guess) {
+  const SE3 T_map_lidar = guess.T_map_lidar_previous * guess.T_previous_current;
+  insert_saved_map_near(T_map_lidar.translation().cast<float>());
+  if (state_.placed) return refine(terms, guess, config_.mapping.refinement);
+  return find_place(terms, T_map_lidar, config_.mapping.place_search, config_.mapping.refinement);
+}
+
+// Nothing is forgotten: there is no more of it than of the saved map.
+void Pipeline::insert_saved_map_near(const Eigen::Vector3f& center_map) {
+  const bool separate = config_.mapping.local_map.separate_classes;
+  const auto radius_m = static_cast<float>(config_.mapping.local_map.radius_m);
+  for (const MapPoint& point : saved_map_.take_near(center_map, radius_m)) {
+    LocalMap* map = &local_maps_.surface;
+    if (separate && point.label == MapLabel::ground) map = &local_maps_.ground;
+    if (separate && point.label == MapLabel::edge) map = &local_maps_.edge;
+    map->insert({&point.p_map, 1});
+  }
 }
 
 void Pipeline::clear_local_maps() {
@@ -288,10 +316,11 @@ void Pipeline::update_static_map(const Scan& scan, const Percept& seen, const Sw
   static_map_.spool_far(T_map_lidar.translation().cast<float>());
 }
 
-// The motion since the previous scan that removes distortion from what is put into maps.
+// The motion since the previous scan that removes distortion from what is put into maps. The first pose that
+// is found in a saved map says nothing of it: the one before was a guess.
 SE3 Pipeline::sweep_increment(const SE3& T_odometry, const SE3& T_map_lidar) const {
   const bool follow_map = config_.mapping.refinement.correct_distortion;
-  return follow_map && !state_.empty ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
+  return follow_map && state_.placed ? state_.T_map_lidar.inverse() * T_map_lidar : T_odometry;
 }
 
 void Pipeline::find_moving(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar,
@@ -318,13 +347,15 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& 
                       FrameResult& result) {
   const SE3& T_map_lidar = next.T_map_lidar;
   next.empty = false;
-  next.motion_known = result.refinement.usable();
+  next.motion_known = result.refinement.usable() && state_.placed;
   if (result.first && !scan.motion_compensated) next.unplaced = seen;
   const bool placeable =
       result.counts.candidates >= static_cast<std::size_t>(config_.mapping.refinement.min_matches);
   if (!result.localised()) next.scans_lost = state_.scans_lost + (placeable ? 1 : 0);
-  const bool new_local_maps =
-      placeable && !result.localised() && (local_maps_are_empty() || next.scans_lost >= kMaxScansLost);
+  const bool makes_map = saved_map_.empty();
+  next.placed = makes_map || result.localised() || (state_.placed && next.scans_lost < kMaxScansLost);
+  const bool new_local_maps = makes_map && placeable && !result.localised() &&
+                              (local_maps_are_empty() || next.scans_lost >= kMaxScansLost);
   if (new_local_maps) {
     clear_local_maps();
     next.scans_lost = 0;
@@ -336,10 +367,12 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& 
         next.reference = make_reference_scan(seen, motion, max_candidates);
       },
       [&] {
-        if (result.localised() || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
+        const bool fits = makes_map && result.localised();
+        if (fits || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
       },
       [&] {
-        if (result.localised()) update_static_map(scan, seen, motion, T_map_lidar, result.objects);
+        if (makes_map && result.localised())
+          update_static_map(scan, seen, motion, T_map_lidar, result.objects);
       });
 
   result.motion = motion;

@@ -9,6 +9,8 @@
 #include "mlo/core/types.hpp"
 #include "mlo/detection/detect.hpp"
 #include "mlo/mapping/local_map.hpp"
+#include "mlo/mapping/refinement.hpp"
+#include "mlo/mapping/saved_map.hpp"
 #include "mlo/mapping/static_map.hpp"
 #include "mlo/mapping/trajectory_list.hpp"
 #include "mlo/odometry/reference_scan.hpp"
@@ -24,6 +26,10 @@ namespace mlo {
 class Pipeline {
  public:
   explicit Pipeline(const PipelineConfig& config);
+  /// Localises in the map of an earlier run and makes none: the map frame is that map's. Until the place is
+  /// found, each scan is looked for around where it should be, and objects are not followed.
+  /// @param T_map_lidar_start  where the first scan was taken, roughly (PlaceSearchConfig)
+  Pipeline(const PipelineConfig& config, std::span<const MapPoint> map, const SE3& T_map_lidar_start);
 
   /// Takes the next scan and the boxes that a detector found in it. Scans come in the order of time; gaps are
   /// allowed. After three scans in a row that are not found in the local maps, these begin anew at the
@@ -42,13 +48,15 @@ class Pipeline {
   /// Everything that later results depend on but the configuration (core/archive.hpp): a pipeline of the same
   /// configuration that reads it goes on as this one would.
   static void archive(auto& self, auto& bytes) {
-    bytes(self.state_, self.local_maps_, self.static_map_, self.trajectories_, self.tracker_);
+    bytes(self.state_, self.local_maps_, self.static_map_, self.saved_map_, self.trajectories_,
+          self.tracker_);
   }
 
  private:
   /// What one scan leaves to the next; replaced as a whole at the end of process().
   struct State {
     bool empty = true;
+    bool placed = false;        ///< in the map: from the first scan on, or once it was found in a saved one
     bool motion_known = false;  ///< false until a first increment was estimated, and after a failure
     double stamp_s = 0.0;
     SE3 T_odom_lidar;         ///< at the reference time of the last scan
@@ -59,8 +67,8 @@ class Pipeline {
     std::vector<Detection> likely_objects;  ///< the detector's, for the next scan to look back at
     std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
     static void archive(auto& self, auto& bytes) {
-      bytes(self.empty, self.motion_known, self.stamp_s, self.T_odom_lidar, self.T_map_lidar, self.T_sweep,
-            self.reference, self.scans_lost, self.likely_objects, self.unplaced);
+      bytes(self.empty, self.placed, self.motion_known, self.stamp_s, self.T_odom_lidar, self.T_map_lidar,
+            self.T_sweep, self.reference, self.scans_lost, self.likely_objects, self.unplaced);
     }
   };
 
@@ -89,6 +97,8 @@ class Pipeline {
   SE3 sweep_increment(const SE3& T_odometry, const SE3& T_map_lidar) const;
   void find_moving(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar,
                    std::vector<TrackedObject>& objects);
+  PoseEstimate refine_in_saved_map(std::span<const RefinementTerm> terms, const RefinementGuess& guess);
+  void insert_saved_map_near(const Eigen::Vector3f& center_map);
   void clear_maps();
   void clear_local_maps();
   bool local_maps_are_empty() const;
@@ -104,6 +114,7 @@ class Pipeline {
   State state_;
   LocalMaps local_maps_;
   StaticMap static_map_;
+  SavedMap saved_map_;  // empty: a map is made
   TrajectoryList trajectories_;
   Tracker tracker_;
 };

@@ -111,11 +111,17 @@ struct Progress {
 
 // What has to be the same for a run to go on with the state of another.
 std::string owner_of(const Dataset& dataset, const std::vector<std::size_t>& indices,
-                     const PipelineConfig& config, const std::optional<DetectionList>& detections) {
-  return fmt::format("mlo {}\nscans of {} {} {}\nframes {} to {}\ndetections in {} frames\n{}", MLO_VERSION,
-                     dataset.root.string(), dataset.format, dataset.sequence,
+                     const PipelineConfig& config, const std::optional<DetectionList>& detections,
+                     const std::optional<StartInMap>& map) {
+  return fmt::format("mlo {}\nscans of {} {} {}\nframes {} to {}\ndetections in {} frames\nmap '{}'\n{}",
+                     MLO_VERSION, dataset.root.string(), dataset.format, dataset.sequence,
                      dataset.scans->frame(indices.front()), dataset.scans->frame(indices.back()),
-                     detections ? detections->by_frame.size() : 0, to_yaml(config));
+                     detections ? detections->by_frame.size() : 0, map ? map->file.string() : "",
+                     to_yaml(config));
+}
+
+Pipeline make_pipeline(const PipelineConfig& config, const std::optional<StartInMap>& map) {
+  return map ? Pipeline(config, map->points, map->T_map_lidar) : Pipeline(config);
 }
 
 // What a run was writing when it was killed (AtomicFile).
@@ -137,8 +143,8 @@ class Run {
         config_(config),
         options_(options),
         indices_(select_indices(dataset, options)),
-        owner_(owner_of(dataset, indices_, config, detections)),
-        pipeline_(config) {
+        owner_(owner_of(dataset, indices_, config, detections, options.map)),
+        pipeline_(make_pipeline(config, options.map)) {
     if (options.resume) remove_unfinished_files(options.out);
     if (!options.resume || !load()) begin();
   }

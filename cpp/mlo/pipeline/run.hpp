@@ -11,6 +11,7 @@
 #include "mlo/io/detections.hpp"
 #include "mlo/pipeline/config.hpp"
 #include "mlo/pipeline/frame_result.hpp"
+#include "mlo/pipeline/start_in_map.hpp"
 
 namespace mlo {
 
@@ -23,6 +24,7 @@ struct RunOptions {
   /// Goes on where a run of the same scans and configuration with the same folder was last saved; from the
   /// first scan where there is nothing to go on from.
   bool resume = false;
+  std::optional<StartInMap> map = {};  ///< to localise in; none: a map is made
 };
 
 /// What a run did; written to run.json.
