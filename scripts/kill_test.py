@@ -21,9 +21,9 @@ NOT_COMPARED = ["per_scan.csv", "run.json"]
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="build/bin/mlo")
-    parser.add_argument("--scans", help="folder of scans (default: a simulated drive of 60 scans)")
+    parser.add_argument("--scans", help="folder of scans (default: a simulated drive of 40 scans)")
     parser.add_argument("--kills", type=int, default=100)
-    parser.add_argument("--save-every", type=int, default=10, help="scans between states to resume from")
+    parser.add_argument("--save-every", type=int, default=5, help="scans between states to resume from")
     parser.add_argument("--seed", type=int, default=1, help="of the moments")
     parser.add_argument("--out", required=True, type=pathlib.Path)
     return parser.parse_args()
@@ -31,8 +31,8 @@ def parse_arguments():
 
 def simulate(arguments):
     drive = arguments.out / "drive"
-    subprocess.run([arguments.program, "-q", "simulate", "--scene", "city", "--scans", "60", "--length", "80",
-                    "--seed", "7", "--overwrite", "--out", drive], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([arguments.program, "-q", "simulate", "--scene", "city", "--scans", "40", "--length", "60", "--seed", "7",
+                    "--set", "sensor.columns=720", "--overwrite", "--out", drive], check=True, stdout=subprocess.DEVNULL)
     arguments.scans = drive
 
 
@@ -95,6 +95,7 @@ def main():
     if not arguments.scans:
         simulate(arguments)
     reference = arguments.out / "reference"
+    shutil.rmtree(reference, ignore_errors=True)
     start = time.monotonic()
     subprocess.run(command(arguments, reference), check=True, stdout=subprocess.DEVNULL)
     duration = time.monotonic() - start

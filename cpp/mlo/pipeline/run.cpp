@@ -125,11 +125,13 @@ Pipeline make_pipeline(const PipelineConfig& config, const std::optional<StartIn
 }
 
 // What a run was writing when it was killed (AtomicFile).
-void remove_unfinished_files(const std::filesystem::path& folder) {
+void remove_unfinished_files(const std::filesystem::path& out) {
   std::vector<std::filesystem::path> unfinished;
-  std::error_code absent;  // then there is nothing to remove
-  for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
-    if (entry.path().extension().string().starts_with(".part")) unfinished.push_back(entry.path());
+  for (const std::filesystem::path& folder : {out, out / "object_maps", out / "object_trajectories"}) {
+    std::error_code absent;  // then there is nothing to remove
+    for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
+      if (entry.path().extension().string().starts_with(".part")) unfinished.push_back(entry.path());
+    }
   }
   for (const std::filesystem::path& file : unfinished) std::filesystem::remove(file);
 }
