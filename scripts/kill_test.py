@@ -21,7 +21,7 @@ NOT_COMPARED = ["per_scan.csv", "run.json"]
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="build/bin/mlo")
-    parser.add_argument("--scans", help="folder of scans (default: a simulated drive of 40 scans)")
+    parser.add_argument("--scans", help="folder of scans (default: a simulated drive of 30 scans)")
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--save-every", type=int, default=5, help="scans between states to resume from")
     parser.add_argument("--seed", type=int, default=1, help="of the moments")
@@ -31,8 +31,8 @@ def parse_arguments():
 
 def simulate(arguments):
     drive = arguments.out / "drive"
-    subprocess.run([arguments.program, "-q", "simulate", "--scene", "city", "--scans", "40", "--length", "60", "--seed", "7",
-                    "--set", "sensor.columns=720", "--overwrite", "--out", drive], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([arguments.program, "-q", "simulate", "--scene", "city", "--scans", "30", "--length", "60", "--seed", "7",
+                    "--set", "sensor.columns=360", "--overwrite", "--out", drive], check=True, stdout=subprocess.DEVNULL)
     arguments.scans = drive
 
 
