@@ -190,9 +190,9 @@ void add_run(CLI::App& program) {
   command->footer(R"(
 Writes to DIR: trajectory.txt (KITTI rows, lidar poses in the first scan's frame), trajectory_camera.txt
 (the same for KITTI's camera 0), trajectory_tum.txt, odometry.txt (before map refinement), static_map.ply
-and .pcd, scene.mlo (all of it over time, see 'mlo scene'), run.json, per_scan.csv and config.yaml; unless --detector
-is none also objects.csv (pose, velocity, size of each tracked object in each scan), object_trajectories/ID.txt (TUM
-rows) and object_maps/ID.ply (in its own frame).
+and .pcd, scene.mlo (all of it over time, see 'mlo scene'), unknown_movers.csv (what moves without a box), run.json,
+per_scan.csv and config.yaml; unless --detector is none also objects.csv (pose, velocity, size of each tracked
+object in each scan), object_trajectories/ID.txt (TUM rows) and object_maps/ID.ply (in its own frame).
 
 Examples:
   mlo run kitti/sequences/04 --out out/04

@@ -68,6 +68,16 @@ TEST(RangeImage, SaysNothingWhereNoRayWent) {
   EXPECT_EQ(empty.sweep_fraction(direction(0.0, 0.0)), 0.5F);
 }
 
+TEST(RangeImage, WhereNoRayAroundCameBackItIsEmpty) {
+  std::vector<Point> room = round_room(20.0, 8.0);
+  std::erase_if(room, [](const Point& point) {
+    return point.p_lidar.x() > 0.0F && std::abs(point.p_lidar.y()) < 0.5F * point.p_lidar.x();
+  });
+  const RangeImage image(room);
+  EXPECT_EQ(image.look(7.0F * direction(0.0, 0.0), 0.3F), Sight::empty);
+  EXPECT_EQ(image.look(7.0F * direction(26.3, 0.0), 0.3F), Sight::unknown) << "beside rays that came back";
+}
+
 TEST(RangeImage, KnowsWhenTheLidarLookedInADirection) {
   const RangeImage image(round_room(20.0, 8.0));
   EXPECT_NEAR(image.sweep_fraction(direction(-90.0, 0.0)), 0.25, 0.002);

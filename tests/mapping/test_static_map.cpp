@@ -97,17 +97,17 @@ std::vector<Point> wall_ahead(float distance_m) {
 TEST(StaticMap, WhatLaterScansSeeThroughIsLeftOut) {
   Percept seen;
   seen.surface.candidates = {at(10.0F, 0.1F, 0.1F), at(20.0F, 0.1F, 0.1F)};
-  StaticMap map({.free_space_hit_votes = 1.0, .free_space_max_votes = 3.0});
+  StaticMap map({.hit_votes = 1.0, .max_votes = 3.0});
   map.insert(seen, SweepMotion::none(), SE3());
-  map.observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), SE3());
+  map.observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), SE3()));
   ASSERT_EQ(map.points().size(), 1U);
   EXPECT_EQ(map.points()[0].p_map.x(), 20.0F);
 
   // When something stands there again, for longer than it was free, it is back.
-  for (int i = 0; i < 2; ++i) map.observe(RangeImage(wall_ahead(10.0F)), SweepMotion::none(), SE3());
+  for (int i = 0; i < 2; ++i) map.observe(ScanView(wall_ahead(10.0F), SweepMotion::none(), SE3()));
   EXPECT_EQ(map.points().size(), 2U) << "what the nearer wall hides stays";
-  for (int i = 0; i < 20; ++i) map.observe(RangeImage(wall_ahead(10.0F)), SweepMotion::none(), SE3());
-  for (int i = 0; i < 4; ++i) map.observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), SE3());
+  for (int i = 0; i < 20; ++i) map.observe(ScanView(wall_ahead(10.0F), SweepMotion::none(), SE3()));
+  for (int i = 0; i < 4; ++i) map.observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), SE3()));
   EXPECT_EQ(map.points().size(), 1U) << "no more than max_votes speak for it";
 }
 
@@ -123,7 +123,7 @@ TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
     const SE3 T_map_lidar(Eigen::Quaterniond::Identity(), {static_cast<double>(robot_m), 0.0, 0.0});
     for (StaticMap* map : {&kept, &spooled}) {
       map->insert(seen, SweepMotion::none(), T_map_lidar);
-      map->observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), T_map_lidar);
+      map->observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), T_map_lidar));
       map->spool_far(T_map_lidar.translation().cast<float>());
     }
     EXPECT_EQ(spooled.size(), kept.size());
@@ -148,7 +148,7 @@ TEST(StaticMap, WhatWasHardlySeenGoesWithItsSurroundings) {
   map.insert(seen, SweepMotion::none(), SE3());
   std::vector<Point> scan = wall_ahead(20.0F);
   std::erase_if(scan, [](const Point& point) { return point.p_lidar.z() > 0.06F * point.p_lidar.x(); });
-  map.observe(RangeImage(scan), SweepMotion::none(), SE3());
+  map.observe(ScanView(scan, SweepMotion::none(), SE3()));
   ASSERT_EQ(map.points().size(), 1U);
   EXPECT_EQ(map.points()[0].p_map.z(), 2.9F);
 }
@@ -166,9 +166,9 @@ TEST(StaticMap, WhatLiesAboutABoxThatMovesIsNotAdded) {
 TEST(StaticMap, WhatIsOutOfReachIsNotVotedOn) {
   Percept seen;
   seen.surface.candidates = {at(10.0F, 0.1F, 0.1F)};
-  StaticMap map({.free_space_range_m = 5.0});
+  StaticMap map({}, {.range_m = 5.0});
   map.insert(seen, SweepMotion::none(), SE3());
-  for (int i = 0; i < 5; ++i) map.observe(RangeImage(wall_ahead(20.0F)), SweepMotion::none(), SE3());
+  for (int i = 0; i < 5; ++i) map.observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), SE3()));
   EXPECT_EQ(map.points().size(), 1U);
 }
 
@@ -187,7 +187,7 @@ TEST(StaticMap, LooksFromWhereTheLidarWasAtThatTimeOfTheSweep) {
   const SweepMotion motion(SE3(so3_exp({0.0, 0.0, 0.1}), Eigen::Vector3d::Zero()), 0.5);
   StaticMap map({});
   map.insert(seen, motion, SE3());
-  map.observe(RangeImage(scan), motion, SE3());
+  map.observe(ScanView(scan, motion, SE3()));
   EXPECT_TRUE(map.points().empty());
 }
 

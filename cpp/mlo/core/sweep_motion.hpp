@@ -48,6 +48,10 @@ class SweepMotion {
 
   double reference_fraction() const { return reference_fraction_; }
 
+  static void archive(auto& self, auto& bytes) {
+    bytes(self.xi_, self.reference_fraction_);
+  }  // core/archive.hpp
+
  private:
   // By a share of the motion, as the third-order series of the exponential: exact to a millimetre at 50 m for
   // turns up to 6 degrees a sweep.

@@ -98,16 +98,66 @@ struct RefinementConfig {
   }
 };
 
+/// What scans tell about places that their rays go through.
+struct FreeSpaceConfig {
+  int every = 4;
+  double range_m = 60.0;
+  double margin_m = 0.2;
+  double margin_per_range = 0.005;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit(
+        "every", every, between(0, 1000),
+        "every n-th scan tells what is free: the map loses what moved, detected or not; 0: none does, as in "
+        "the paper");
+    visit("range_m", range_m, between(1.0, 500.0),
+          "how far from the robot this is done: completeness against time [m]");
+    visit("margin_m", margin_m, between(0.0, 10.0),
+          "a ray that ends this much beyond a point went through it: lower removes more, of what stands "
+          "too [m]");
+    visit("margin_per_range", margin_per_range, between(0.0, 1.0),
+          "added to the margin for each metre of range");
+  }
+};
+
+/// Things that move and that no detector reports.
+struct UnknownMoversConfig {
+  int every = 12;
+  int scans_remembered = 20;
+  int min_free = 2;
+  double column_m = 0.5;
+  double min_share = 0.5;
+  int min_points = 6;
+  double min_way_m = 1.0;
+  int min_scans = 5;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("every", every, between(0, 1000),
+          "every n-th scan is remembered; 0: nothing is looked for, as in the paper");
+    visit("scans_remembered", scans_remembered, between(1, 1000),
+          "more find longer and slower things, at more time and memory");
+    visit("min_free", min_free, between(1, 1000),
+          "a point is new where so many of these went through its place before any ended there");
+    visit("column_m", column_m, between(0.1, 5.0),
+          "points are judged together in upright columns of this width [m]");
+    visit("min_share", min_share, between(0.0, 1.0),
+          "a column is new when this share of its points is of those that can be told");
+    visit("min_points", min_points, between(1, 100000),
+          "new columns side by side are one thing if they hold so many points");
+    visit("min_way_m", min_way_m, between(0.0, 100.0),
+          "it is reported while it moves on this far in a second, and straight [m]");
+    visit("min_scans", min_scans, between(2, 1000), "and was seen in so many scans in a row");
+  }
+};
+
 /// The long-term map that is saved.
 struct StaticMapConfig {
   double voxel_m = 0.2;
-  int free_space_every = 4;
-  double free_space_range_m = 60.0;
-  double free_space_margin_m = 0.2;
-  double free_space_margin_per_range = 0.005;
-  double free_space_hit_votes = 0.7;
-  double free_space_max_votes = 8.0;
-  double free_space_sure_votes = 3.0;
+  double hit_votes = 0.7;
+  double max_votes = 8.0;
+  double sure_votes = 3.0;
   double moving_margin_m = 0.5;
   double memory_radius_m = 200.0;
 
@@ -115,22 +165,12 @@ struct StaticMapConfig {
   void fields(Visitor& visit) {
     visit("voxel_m", voxel_m, between(0.01, 10.0),
           "one point per voxel is kept: detail against memory and file size [m]");
-    visit("free_space_every", free_space_every, between(0, 1000),
-          "every n-th scan votes on the points that it sees or sees through; those with votes below "
-          "zero are not part of the map: what moves, detected or not; 0 keeps all, as in the paper");
-    visit("free_space_range_m", free_space_range_m, between(1.0, 500.0),
-          "how far from the robot this is done: completeness against time [m]");
-    visit("free_space_margin_m", free_space_margin_m, between(0.0, 10.0),
-          "a ray that ends this much beyond a point went through it: lower removes more, of what stands "
-          "too [m]");
-    visit("free_space_margin_per_range", free_space_margin_per_range, between(0.0, 1.0),
-          "added to the margin for each metre of range");
-    visit("free_space_hit_votes", free_space_hit_votes, between(0.0, 100.0),
-          "a ray that ends at a point votes this much for it, one that went through one vote against "
-          "it: higher keeps more of what is thin");
-    visit("free_space_max_votes", free_space_max_votes, between(1.0, 1000.0),
+    visit("hit_votes", hit_votes, between(0.0, 100.0),
+          "a ray that ends at a point votes this much for it, one that went through one vote against it, and "
+          "points with votes below zero are left out: higher keeps more of what is thin");
+    visit("max_votes", max_votes, between(1.0, 1000.0),
           "no more votes are kept for or against a point: lower follows changes sooner");
-    visit("free_space_sure_votes", free_space_sure_votes, between(0.0, 1000.0),
+    visit("sure_votes", sure_votes, between(0.0, 1000.0),
           "points with fewer votes are left out where their surroundings were seen through: higher "
           "removes more, of what stands too");
     visit("moving_margin_m", moving_margin_m, between(0.0, 5.0),
@@ -225,6 +265,8 @@ struct PlaceSearchConfig {
 struct MappingConfig {
   LocalMapConfig local_map;
   RefinementConfig refinement;
+  FreeSpaceConfig free_space;
+  UnknownMoversConfig unknown_movers;
   StaticMapConfig static_map;
   DynamicCheckConfig dynamic_check;
   PlaceSearchConfig place_search;
@@ -233,6 +275,8 @@ struct MappingConfig {
   void fields(Visitor& visit) {
     visit.group("local_map", local_map, "The map around the robot that scans are registered to.");
     visit.group("refinement", refinement, "Scan-to-map registration (paper, section III-D-2).");
+    visit.group("free_space", free_space, "What scans tell about places that their rays go through.");
+    visit.group("unknown_movers", unknown_movers, "Things that move and that no detector reports.");
     visit.group("static_map", static_map, "The long-term map that is saved.");
     visit.group("dynamic_check", dynamic_check, "Which objects move (paper, section III-D-1).");
     visit.group("place_search", place_search, "The first pose in the map of an earlier run (run --map).");

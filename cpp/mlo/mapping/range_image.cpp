@@ -80,12 +80,21 @@ float RangeImage::sweep_fraction(const Eigen::Vector3f& p_lidar) const {
   return sweep_fractions_[static_cast<std::size_t>(column(p_lidar))];
 }
 
+bool RangeImage::is_empty_around(int row, int column) const {
+  for (int i = std::max(0, row - 1); i <= std::min(rows_ - 1, row + 1); ++i) {
+    for (int j = column - 1; j <= column + 1; ++j) {
+      if (at(i, j).nearest_m > 0.0F) return false;
+    }
+  }
+  return true;
+}
+
 Sight RangeImage::look(const Eigen::Vector3f& p_lidar, float margin_m) const {
   const int r = row(p_lidar);
   if (r < 0 || r >= rows_) return Sight::unknown;
   const int c = column(p_lidar);
   const Pixel& middle = at(r, c);
-  if (!(middle.nearest_m > 0.0F)) return Sight::unknown;
+  if (!(middle.nearest_m > 0.0F)) return is_empty_around(r, c) ? Sight::empty : Sight::unknown;
   const float range_m = p_lidar.norm();
   if (range_m > middle.nearest_m - margin_m && range_m < middle.farthest_m + margin_m) return Sight::hit;
   for (int j = c - 1; j <= c + 1; ++j) {

@@ -13,7 +13,8 @@ namespace mlo {
 enum class Sight {
   unknown,  ///< no ray came near, or it ended in front
   hit,      ///< a ray ended there
-  through   ///< the rays around went on beyond
+  through,  ///< the rays around went on beyond
+  empty     ///< none of the rays around came back: the sky, or what reflects nothing
 };
 
 /// The ranges of one scan by direction, as they were measured: for questions of what was free.
@@ -38,17 +39,23 @@ class RangeImage {
   /// @param margin_m  how far ranges may differ and still mean the same place
   Sight look(const Eigen::Vector3f& p_lidar, float margin_m) const;
 
+  static void archive(auto& self, auto& bytes) {  // core/archive.hpp
+    bytes(self.lowest_tangent_, self.inverse_row_height_, self.rows_, self.pixels_, self.sweep_fractions_);
+  }
+
  private:
   static constexpr int kColumns = 720;
 
   struct Pixel {
     float nearest_m = 0.0F;  // 0: no ray
     float farthest_m = 0.0F;
+    static void archive(auto& self, auto& bytes) { bytes(self.nearest_m, self.farthest_m); }
   };
   void set_rows(std::span<const Point> points);
   static int column(const Eigen::Vector3f& p_lidar);
   int row(const Eigen::Vector3f& p_lidar) const;
   const Pixel& at(int row, int column) const;
+  bool is_empty_around(int row, int column) const;
 
   float lowest_tangent_ = 0.0F;  // of the elevation
   float inverse_row_height_ = 0.0F;

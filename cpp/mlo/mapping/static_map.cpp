@@ -34,18 +34,18 @@ float distance_m(const VoxelKey& tile, const Eigen::Vector3f& p_map) {
 
 }  // namespace
 
-StaticMap::StaticMap(const StaticMapConfig& config)
-    : config_(config), inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)) {}
+StaticMap::StaticMap(const StaticMapConfig& config, const FreeSpaceConfig& free_space)
+    : config_(config), free_space_(free_space), inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)) {}
 
 void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
-                       std::span<const Box3d> moving) {
-  insert(percept.edge.candidates, MapLabel::edge, motion, T_map_lidar, moving);
-  insert(percept.ground.candidates, MapLabel::ground, motion, T_map_lidar, moving);
-  insert(percept.surface.candidates, MapLabel::surface, motion, T_map_lidar, moving);
+                       std::span<const Box3d> moving, const ColumnSet& columns) {
+  insert(percept.edge.candidates, MapLabel::edge, motion, T_map_lidar, moving, columns);
+  insert(percept.ground.candidates, MapLabel::ground, motion, T_map_lidar, moving, {});
+  insert(percept.surface.candidates, MapLabel::surface, motion, T_map_lidar, moving, columns);
 }
 
 void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
-                       const SE3& T_map_lidar, std::span<const Box3d> moving) {
+                       const SE3& T_map_lidar, std::span<const Box3d> moving, const ColumnSet& columns) {
   Tile* tile = nullptr;
   VoxelBlock* block = nullptr;
   VoxelKey last_block;
@@ -55,6 +55,7 @@ void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, c
     const auto is_near = [&](const Box3d& box) { return box.contains(p_lidar, config_.moving_margin_m); };
     if (std::any_of(moving.begin(), moving.end(), is_near)) continue;
     const Eigen::Vector3f p_map = (T_map_lidar * p_lidar).cast<float>();
+    if (columns.contains(p_map)) continue;
     // Neighbours in a scan are neighbours in the map.
     const VoxelKey voxel = voxel_key(p_map, inverse_voxel_);
     const bool same_tile = tile != nullptr && tile->key == tile_key(p_map);
@@ -115,34 +116,22 @@ void StaticMap::spool(Tile& tile) {
   tile.index = {};
 }
 
-void StaticMap::observe(const RangeImage& view, const SweepMotion& motion, const SE3& T_map_lidar) {
-  const Eigen::Vector3f center_map = T_map_lidar.translation().cast<float>();
+void StaticMap::observe(const ScanView& view) {
   std::vector<Tile*> near;
   for (Tile& tile : tiles_) {
-    const bool in_reach = distance_m(tile.key, center_map) <= static_cast<float>(config_.free_space_range_m);
+    const bool in_reach = distance_m(tile.key, view.center_map()) <= static_cast<float>(free_space_.range_m);
     if (in_reach && tile.num_spooled == 0) near.push_back(&tile);
   }
-  const SE3 T_lidar_map = T_map_lidar.inverse();
-  parallel_for_each_index(near.size(), [&](std::size_t i) { observe(*near[i], view, motion, T_lidar_map); });
+  parallel_for_each_index(near.size(), [&](std::size_t i) { observe(*near[i], view); });
 }
 
-void StaticMap::observe(Tile& tile, const RangeImage& view, const SweepMotion& motion,
-                        const SE3& T_lidar_map) const {
-  const auto max_range_m = static_cast<float>(config_.free_space_range_m);
-  const auto margin_per_range = static_cast<float>(config_.free_space_margin_per_range);
-  const auto limit = static_cast<float>(config_.free_space_max_votes);
+void StaticMap::observe(Tile& tile, const ScanView& view) const {
+  const auto hit_votes = static_cast<float>(config_.hit_votes);
+  const auto limit = static_cast<float>(config_.max_votes);
   for (Entry& entry : tile.entries) {
-    const Eigen::Vector3d p = T_lidar_map * entry.point.p_map.cast<double>();
-    const Eigen::Vector3f p_lidar = p.cast<float>();
-    const float range_m = p_lidar.norm();
-    if (range_m > max_range_m) continue;
-    const auto sweep_fraction = static_cast<double>(view.sweep_fraction(p_lidar));
-    const Eigen::Vector3f p_measured = motion.distort(p, sweep_fraction).cast<float>();
-    float margin_m = static_cast<float>(config_.free_space_margin_m) + margin_per_range * range_m;
-    if (entry.point.label == MapLabel::ground) margin_m += view.step_on_ground_m(p_lidar);
-    const Sight sight = view.look(p_measured, margin_m);
+    const Sight sight = view.look(entry.point.p_map, entry.point.label == MapLabel::ground, free_space_);
     if (sight == Sight::hit) {
-      entry.votes = std::min(entry.votes + static_cast<float>(config_.free_space_hit_votes), limit);
+      entry.votes = std::min(entry.votes + hit_votes, limit);
     } else if (sight == Sight::through) {
       entry.votes = std::max(entry.votes - 1.0F, -limit);
     }
@@ -155,7 +144,7 @@ void StaticMap::archive(const StaticMap& self, ArchiveWriter& bytes) {
 }
 
 void StaticMap::archive(StaticMap& self, ArchiveReader& bytes) {
-  self = StaticMap(self.config_);
+  self = StaticMap(self.config_, self.free_space_);
   std::size_t count = 0;
   bytes(count);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -191,7 +180,7 @@ StaticMap::Counts StaticMap::count_seen_through() const {
 std::vector<MapPoint> StaticMap::points() const {
   const Counts seen_through = count_seen_through();
   const auto is_doubtful = [&](const Entry& entry) {
-    if (static_cast<double>(entry.votes) >= config_.free_space_sure_votes) return false;
+    if (static_cast<double>(entry.votes) >= config_.sure_votes) return false;
     const auto found = seen_through.find(block_key(entry.point.p_map));
     return found != seen_through.end() && found->second >= kDoubtfulBlock;
   };

@@ -11,8 +11,9 @@
 #include "mlo/core/sweep_motion.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/core/voxel_grid.hpp"
+#include "mlo/mapping/column_set.hpp"
 #include "mlo/mapping/config.hpp"
-#include "mlo/mapping/range_image.hpp"
+#include "mlo/mapping/scan_view.hpp"
 #include "mlo/mapping/spool.hpp"
 #include "mlo/mapping/voxel_block.hpp"
 
@@ -22,19 +23,19 @@ namespace mlo {
 /// and without what later scans looked through.
 class StaticMap {
  public:
-  explicit StaticMap(const StaticMapConfig& config);
+  explicit StaticMap(const StaticMapConfig& config, const FreeSpaceConfig& free_space = {});
 
   /// Adds the candidate sets of a scan.
   /// @param motion       brings the points to the time of the pose
   /// @param T_map_lidar  pose at the motion's reference time
   /// @param moving       what moves, in the lidar frame at that time: points in or near these boxes are left
-  /// out
+  ///                     out
+  /// @param columns      of things that move without a box: edges and surfaces in them are left out, too
   void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
-              std::span<const Box3d> moving = {});
+              std::span<const Box3d> moving = {}, const ColumnSet& columns = {});
 
   /// Lets a scan vote on the points of the map: for those that it sees, against those that it sees through.
-  /// @param view  of the whole scan, objects too; motion and pose as above
-  void observe(const RangeImage& view, const SweepMotion& motion, const SE3& T_map_lidar);
+  void observe(const ScanView& view);
 
   /// Puts the parts that are far from a place (map frame [m]) on disk. They come back when they are needed.
   /// @throws InputError when the temporary files cannot be written
@@ -66,7 +67,7 @@ class StaticMap {
   };
 
   void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
-              const SE3& T_map_lidar, std::span<const Box3d> moving);
+              const SE3& T_map_lidar, std::span<const Box3d> moving, const ColumnSet& columns);
   /// Points that were seen through in each block of space that has some.
   using Counts = tsl::robin_map<VoxelKey, int, VoxelKeyHash>;
   Counts count_seen_through() const;
@@ -75,10 +76,11 @@ class StaticMap {
   void fetch(Tile& tile) const;
   void make_index(Tile& tile) const;
   std::vector<Entry> entries_of(const Tile& tile) const;
-  void observe(Tile& tile, const RangeImage& view, const SweepMotion& motion, const SE3& T_lidar_map) const;
+  void observe(Tile& tile, const ScanView& view) const;
   static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }
 
   StaticMapConfig config_;
+  FreeSpaceConfig free_space_;
   float inverse_voxel_;
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> tile_index_;
   std::vector<Tile> tiles_;

@@ -11,6 +11,7 @@
 #include "mlo/core/se3.hpp"
 #include "mlo/core/sweep_motion.hpp"
 #include "mlo/mapping/trajectory_list.hpp"
+#include "mlo/mapping/unknown_movers.hpp"
 #include "mlo/odometry/consistency_check.hpp"
 #include "mlo/tracking/tracker.hpp"
 
@@ -75,6 +76,7 @@ struct FrameResult {
   PoseEstimate refinement;  ///< T_map_lidar at the reference time of the sweep
   ConsistencyReport consistency;
   std::vector<TrackedObject> objects;  ///< all tracks that live, in the map frame; none without detections
+  std::vector<UnknownMover> unknown_movers;    ///< what moves besides
   std::vector<MappedObject> finished_objects;  ///< maps of those that are no longer followed
   Percept percept;                             ///< what was seen, as measured
   SweepMotion motion = SweepMotion::none();    ///< brings its points to the reference time

@@ -98,7 +98,8 @@ Pipeline::Pipeline(const PipelineConfig& config)
     : config_(config),
       local_maps_{LocalMap(config.mapping.local_map), LocalMap(config.mapping.local_map),
                   LocalMap(config.mapping.local_map)},
-      static_map_(config.mapping.static_map),
+      static_map_(config.mapping.static_map, config.mapping.free_space),
+      unknown_movers_(config.mapping.unknown_movers, config.mapping.free_space),
       trajectories_(config.mapping.dynamic_check, config.mapping.refinement),
       tracker_(config.tracking) {}
 
@@ -289,7 +290,8 @@ bool Pipeline::local_maps_are_empty() const {
 
 void Pipeline::clear_maps() {
   clear_local_maps();
-  static_map_ = StaticMap(config_.mapping.static_map);
+  static_map_ = StaticMap(config_.mapping.static_map, config_.mapping.free_space);
+  unknown_movers_ = UnknownMovers(config_.mapping.unknown_movers, config_.mapping.free_space);
 }
 
 void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar) {
@@ -306,14 +308,32 @@ void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& moti
   }
 }
 
-void Pipeline::update_static_map(const Scan& scan, const Percept& seen, const SweepMotion& motion,
-                                 const SE3& T_map_lidar, std::span<const TrackedObject> objects) {
-  static_map_.insert(seen, motion, T_map_lidar, boxes_of_moving(objects));
-  const auto vote_every = static_cast<std::size_t>(config_.mapping.static_map.free_space_every);
-  if (vote_every > 0 && scan.frame % vote_every == 0) {
-    static_map_.observe(RangeImage(scan.points), motion, T_map_lidar);
+FoundMovers Pipeline::find_unknown_movers(const Scan& scan, const Percept& seen, const SweepMotion& motion,
+                                          const SE3& T_map_lidar) {
+  if (config_.mapping.unknown_movers.every == 0) return {};
+  std::vector<Eigen::Vector3f> points_map = placed(seen.edge.candidates, motion, T_map_lidar);
+  const std::vector<Eigen::Vector3f> surface = placed(seen.surface.candidates, motion, T_map_lidar);
+  points_map.insert(points_map.end(), surface.begin(), surface.end());
+  return unknown_movers_.update(scan.stamp_s, points_map);
+}
+
+std::vector<UnknownMover> Pipeline::update_static_map(const Scan& scan, const Percept& seen,
+                                                      const SweepMotion& motion, const SE3& T_map_lidar,
+                                                      std::span<const TrackedObject> objects) {
+  FoundMovers unknown = find_unknown_movers(scan, seen, motion, T_map_lidar);
+  static_map_.insert(seen, motion, T_map_lidar, boxes_of_moving(objects), unknown.columns);
+  const auto is_turn = [&](int every) {
+    return every > 0 && scan.frame % static_cast<std::size_t>(every) == 0;
+  };
+  const bool votes = is_turn(config_.mapping.free_space.every);
+  const bool is_remembered = is_turn(config_.mapping.unknown_movers.every);
+  if (votes || is_remembered) {
+    ScanView view(scan.points, motion, T_map_lidar);
+    if (votes) static_map_.observe(view);
+    if (is_remembered) unknown_movers_.remember(std::move(view));
   }
   static_map_.spool_far(T_map_lidar.translation().cast<float>());
+  return std::move(unknown.movers);
 }
 
 // The motion since the previous scan that removes distortion from what is put into maps. The first pose that
@@ -371,8 +391,8 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& 
         if (fits || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
       },
       [&] {
-        if (makes_map && result.localised())
-          update_static_map(scan, seen, motion, T_map_lidar, result.objects);
+        if (!makes_map || !result.localised()) return;
+        result.unknown_movers = update_static_map(scan, seen, motion, T_map_lidar, result.objects);
       });
 
   result.motion = motion;

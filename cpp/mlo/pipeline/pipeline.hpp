@@ -13,6 +13,7 @@
 #include "mlo/mapping/saved_map.hpp"
 #include "mlo/mapping/static_map.hpp"
 #include "mlo/mapping/trajectory_list.hpp"
+#include "mlo/mapping/unknown_movers.hpp"
 #include "mlo/odometry/reference_scan.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
 #include "mlo/perception/ground.hpp"
@@ -48,8 +49,8 @@ class Pipeline {
   /// Everything that later results depend on but the configuration (core/archive.hpp): a pipeline of the same
   /// configuration that reads it goes on as this one would.
   static void archive(auto& self, auto& bytes) {
-    bytes(self.state_, self.local_maps_, self.static_map_, self.saved_map_, self.trajectories_,
-          self.tracker_);
+    bytes(self.state_, self.local_maps_, self.static_map_, self.unknown_movers_, self.saved_map_,
+          self.trajectories_, self.tracker_);
   }
 
  private:
@@ -104,8 +105,11 @@ class Pipeline {
   bool local_maps_are_empty() const;
   void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
 
-  void update_static_map(const Scan& scan, const Percept& seen, const SweepMotion& motion,
-                         const SE3& T_map_lidar, std::span<const TrackedObject> objects);
+  FoundMovers find_unknown_movers(const Scan& scan, const Percept& seen, const SweepMotion& motion,
+                                  const SE3& T_map_lidar);
+  std::vector<UnknownMover> update_static_map(const Scan& scan, const Percept& seen,
+                                              const SweepMotion& motion, const SE3& T_map_lidar,
+                                              std::span<const TrackedObject> objects);
   /// @param next  with stamp, poses and motion of this scan; the rest is filled in
   void commit(const Scan& scan, const Percept& seen, const SweepMotion& motion, State next,
               FrameResult& result);
@@ -114,6 +118,7 @@ class Pipeline {
   State state_;
   LocalMaps local_maps_;
   StaticMap static_map_;
+  UnknownMovers unknown_movers_;
   SavedMap saved_map_;  // empty: a map is made
   TrajectoryList trajectories_;
   Tracker tracker_;

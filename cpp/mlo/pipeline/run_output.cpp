@@ -18,12 +18,16 @@ constexpr const char* kTrajectoryCamera = "trajectory_camera.txt";
 constexpr const char* kOdometry = "odometry.txt";
 constexpr const char* kPerScan = "per_scan.csv";
 constexpr const char* kObjects = "objects.csv";
+constexpr const char* kUnknownMovers = "unknown_movers.csv";
 constexpr const char* kScene = "scene.mlo";
 
 constexpr std::string_view kPerScanHeader =
     "frame,stamp_s,status,x_m,y_m,z_m,odometry_status,consistency_passed,consistent_share,"
     "refinement_status,degenerate_directions,matches,iterations,rms_residual_m,points,ground_points,"
     "ground_features,edge_features,surface_features,candidates,objects,object_points,ambiguous_points";
+
+constexpr std::string_view kUnknownMoversHeader =
+    "frame,stamp_s,id,x_m,y_m,z_m,size_x_m,size_y_m,size_z_m,vx_mps,vy_mps,points";
 
 std::filesystem::path create_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -61,6 +65,14 @@ std::string per_scan_row(const FrameResult& result) {
   return row + ",";
 }
 
+std::string unknown_mover_row(std::size_t frame, double stamp_s, const UnknownMover& mover) {
+  const Eigen::Vector3d& p = mover.center_map;
+  const Eigen::Vector3d& size = mover.size_m;
+  return fmt::format("{},{:.6f},{},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.2f},{:.3f},{:.3f},{}", frame,
+                     stamp_s, mover.id, p.x(), p.y(), p.z(), size.x(), size.y(), size.z(),
+                     mover.velocity_map_mps.x(), mover.velocity_map_mps.y(), mover.num_points);
+}
+
 }  // namespace
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Dataset& dataset,
@@ -70,11 +82,14 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Dataset& dataset
   for (const char* name : {kTrajectory, kTrajectoryTum, kOdometry, kPerScan}) create(name);
   if (T_camera_lidar_) create(kTrajectoryCamera);
   if (with_objects) create(kObjects);
+  const bool with_unknown = config.mapping.unknown_movers.every > 0;
+  if (with_unknown) create(kUnknownMovers);
   if (config.scene.write) scene_.emplace(folder / kScene, scene_meta(dataset, config), config.scene);
   std::string header(kPerScanHeader);
   for (const std::string_view stage : kStageNames) header += fmt::format(",{}_ms", stage);
   write_row(kPerScan, header + ",problem");
   if (with_objects) write_row(kObjects, object_table_header());
+  if (with_unknown) write_row(kUnknownMovers, std::string(kUnknownMoversHeader));
 }
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Dataset& dataset,
@@ -115,6 +130,9 @@ void RunOutput::write(FrameResult result) {
   write_row(kTrajectoryTum, tum_row(result.stamp_s, result.T_map_lidar));
   write_row(kPerScan, per_scan_row(result));
   if (with_objects()) write_objects(result);
+  for (const UnknownMover& mover : result.unknown_movers) {
+    write_row(kUnknownMovers, unknown_mover_row(result.frame, result.stamp_s, mover));
+  }
   write_object_maps(result.finished_objects);
   if (scene_) scene_->write(std::move(result));
 }

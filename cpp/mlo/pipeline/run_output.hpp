@@ -39,8 +39,8 @@ class RunOutput {
   RunOutput(const std::filesystem::path& folder, const Dataset& dataset, const PipelineConfig& config,
             RunOutputState state);
 
-  /// trajectory.txt, trajectory_tum.txt, odometry.txt, trajectory_camera.txt, a row of per_scan.csv, and the
-  /// scene.
+  /// trajectory.txt, trajectory_tum.txt, odometry.txt, trajectory_camera.txt, a row of per_scan.csv, rows of
+  /// unknown_movers.csv, and the scene.
   /// @throws InputError when the disk is full
   void write(FrameResult result);
   /// For a scan that could not be used: a row of per_scan.csv with the problem, and the predicted poses in
