@@ -99,6 +99,7 @@ void print_summary(const RunSummary& summary, const std::filesystem::path& out) 
         "refinement\n",
         summary.odometry_degenerate, summary.degenerate);
   }
+  if (summary.loops > 0) std::cout << fmt::format("loops closed: {}\n", summary.loops);
   std::cout << fmt::format("results in {}: trajectory.txt, static_map.ply, run.json, per_scan.csv\n",
                            out.string());
 }

@@ -38,23 +38,24 @@ StaticMap::StaticMap(const StaticMapConfig& config, const FreeSpaceConfig& free_
     : config_(config), free_space_(free_space), inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)) {}
 
 void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
-                       std::span<const Box3d> moving, const ColumnSet& columns) {
-  insert(percept.edge.candidates, MapLabel::edge, motion, T_map_lidar, moving, columns);
-  insert(percept.ground.candidates, MapLabel::ground, motion, T_map_lidar, moving, {});
-  insert(percept.surface.candidates, MapLabel::surface, motion, T_map_lidar, moving, columns);
+                       std::span<const Box3d> moving, const ColumnSet& columns, std::size_t frame) {
+  const Insertion scan{motion, T_map_lidar, moving, static_cast<std::uint32_t>(frame)};
+  insert(percept.edge.candidates, MapLabel::edge, scan, columns);
+  insert(percept.ground.candidates, MapLabel::ground, scan, {});
+  insert(percept.surface.candidates, MapLabel::surface, scan, columns);
 }
 
-void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
-                       const SE3& T_map_lidar, std::span<const Box3d> moving, const ColumnSet& columns) {
+void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const Insertion& scan,
+                       const ColumnSet& columns) {
   Tile* tile = nullptr;
   VoxelBlock* block = nullptr;
   VoxelKey last_block;
   for (const FeaturePoint& feature : features) {
     const Eigen::Vector3d p_lidar =
-        motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
+        scan.motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
     const auto is_near = [&](const Box3d& box) { return box.contains(p_lidar, config_.moving_margin_m); };
-    if (std::any_of(moving.begin(), moving.end(), is_near)) continue;
-    const Eigen::Vector3f p_map = (T_map_lidar * p_lidar).cast<float>();
+    if (std::any_of(scan.moving.begin(), scan.moving.end(), is_near)) continue;
+    const Eigen::Vector3f p_map = (scan.T_map_lidar * p_lidar).cast<float>();
     if (columns.contains(p_map)) continue;
     // Neighbours in a scan are neighbours in the map.
     const VoxelKey voxel = voxel_key(p_map, inverse_voxel_);
@@ -67,7 +68,7 @@ void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, c
     std::uint32_t& place = block->at(voxel);
     if (place != VoxelBlock::kNone) continue;
     place = static_cast<std::uint32_t>(tile->entries.size());
-    tile->entries.push_back({{p_map, feature.intensity, label}});
+    tile->entries.push_back({.point = {p_map, feature.intensity, label}, .frame = scan.frame});
   }
 }
 
@@ -177,21 +178,39 @@ StaticMap::Counts StaticMap::count_seen_through() const {
   return counts;
 }
 
-std::vector<MapPoint> StaticMap::points() const {
+std::vector<StaticMap::Entry> StaticMap::kept_entries() const {
   const Counts seen_through = count_seen_through();
   const auto is_doubtful = [&](const Entry& entry) {
     if (static_cast<double>(entry.votes) >= config_.sure_votes) return false;
     const auto found = seen_through.find(block_key(entry.point.p_map));
     return found != seen_through.end() && found->second >= kDoubtfulBlock;
   };
-  std::vector<MapPoint> all;
-  all.reserve(size());
+  std::vector<Entry> kept;
+  kept.reserve(size());
   for (const Tile& tile : tiles_) {
     for (const Entry& entry : entries_of(tile)) {
-      if (!is_seen_through(entry) && !is_doubtful(entry)) all.push_back(entry.point);
+      if (!is_seen_through(entry) && !is_doubtful(entry)) kept.push_back(entry);
     }
   }
-  return all;
+  return kept;
+}
+
+std::vector<MapPoint> StaticMap::points() const {
+  return moved_points({});
+}
+
+std::vector<MapPoint> StaticMap::moved_points(const std::map<std::size_t, SE3>& corrections) const {
+  std::vector<MapPoint> points;
+  for (const Entry& entry : kept_entries()) {
+    points.push_back(entry.point);
+    const auto correction = corrections.find(entry.frame);
+    if (correction == corrections.end()) continue;
+    Eigen::Vector3f& p_map = points.back().p_map;
+    p_map = (correction->second * p_map.cast<double>()).cast<float>();
+  }
+  if (corrections.empty()) return points;
+  return downsample_first<MapPoint>(points, static_cast<float>(config_.voxel_m),
+                                    [](const MapPoint& point) { return point.p_map; });
 }
 
 }  // namespace mlo

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -31,8 +33,9 @@ class StaticMap {
   /// @param moving       what moves, in the lidar frame at that time: points in or near these boxes are left
   ///                     out
   /// @param columns      of things that move without a box: edges and surfaces in them are left out, too
+  /// @param frame        of the scan
   void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
-              std::span<const Box3d> moving = {}, const ColumnSet& columns = {});
+              std::span<const Box3d> moving = {}, const ColumnSet& columns = {}, std::size_t frame = 0);
 
   /// Lets a scan vote on the points of the map: for those that it sees, against those that it sees through.
   void observe(const ScanView& view);
@@ -46,6 +49,9 @@ class StaticMap {
   /// The points that were not seen through, without those among them that were hardly seen themselves, in an
   /// order that depends only on what was inserted and observed.
   std::vector<MapPoint> points() const;
+  /// The same, with the points of each scan moved in the map frame, and then one for each voxel.
+  /// @param corrections  by the frame of the scan that a point is from; the others stay
+  std::vector<MapPoint> moved_points(const std::map<std::size_t, SE3>& corrections) const;
 
   /// All but the configuration (core/archive.hpp), what waits on disk too.
   static void archive(const StaticMap& self, ArchiveWriter& bytes);
@@ -55,7 +61,8 @@ class StaticMap {
   struct Entry {
     MapPoint point;
     float votes = 0.0F;  // for being there
-    static void archive(auto& self, auto& bytes) { bytes(self.point, self.votes); }
+    std::uint32_t frame = 0;
+    static void archive(auto& self, auto& bytes) { bytes(self.point, self.votes, self.frame); }
   };
   /// A column of the map: what is near the robot is found by its tiles.
   struct Tile {
@@ -66,8 +73,15 @@ class StaticMap {
     std::size_t num_spooled = 0;  // entries there; 0: the tile is in memory
   };
 
-  void insert(std::span<const FeaturePoint> features, MapLabel label, const SweepMotion& motion,
-              const SE3& T_map_lidar, std::span<const Box3d> moving, const ColumnSet& columns);
+  /// What a scan brings, but for its points.
+  struct Insertion {
+    const SweepMotion& motion;
+    const SE3& T_map_lidar;
+    std::span<const Box3d> moving;
+    std::uint32_t frame;
+  };
+  void insert(std::span<const FeaturePoint> features, MapLabel label, const Insertion& scan,
+              const ColumnSet& columns);
   /// Points that were seen through in each block of space that has some.
   using Counts = tsl::robin_map<VoxelKey, int, VoxelKeyHash>;
   Counts count_seen_through() const;
@@ -77,6 +91,7 @@ class StaticMap {
   void make_index(Tile& tile) const;
   std::vector<Entry> entries_of(const Tile& tile) const;
   void observe(Tile& tile, const ScanView& view) const;
+  std::vector<Entry> kept_entries() const;
   static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }
 
   StaticMapConfig config_;

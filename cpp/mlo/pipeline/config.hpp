@@ -7,6 +7,7 @@
 
 #include "mlo/core/sensor.hpp"
 #include "mlo/detection/config.hpp"
+#include "mlo/loops/config.hpp"
 #include "mlo/mapping/config.hpp"
 #include "mlo/odometry/config.hpp"
 #include "mlo/perception/config.hpp"
@@ -62,6 +63,7 @@ struct PipelineConfig {
   OdometryConfig odometry;
   MappingConfig mapping;
   TrackingConfig tracking;
+  LoopClosureConfig loop_closure;
   SceneConfig scene;
 
   template <class Visitor>
@@ -74,7 +76,12 @@ struct PipelineConfig {
     visit.group("odometry", odometry, "Scan-to-scan ego odometry (paper, section III-C-1).");
     visit.group("mapping", mapping, "Map refinement and the static map (paper, section III-D).");
     visit.group("tracking", tracking, "Multi-object tracking (paper, section III-C-2).");
+    visit.group("loop_closure", loop_closure, "What is done about places that the robot comes back to.");
     visit.group("scene", scene, "The 4D file that a run writes (docs/scene_format.md).");
+  }
+  std::vector<std::string> find_problems() const {
+    if (!loop_closure.enabled || (scene.write && scene.clouds)) return {};
+    return {"loop_closure.enabled needs the clouds of the scene: set scene.write and scene.clouds to true"};
   }
 };
 

@@ -39,11 +39,11 @@ std::string object_table_row(const ObjectRow& place, const TrackedObject& object
                      object.hits, object.misses, to_string(object.relative_motion.status));
 }
 
-void ObjectTrajectories::add(const ObjectRow& place, const TrackedObject& object) {
-  PoseList& poses = by_id_[object.id];
+void ObjectTrajectories::add(const ObjectRow& place, long id, const SE3& T_map_object) {
+  PoseList& poses = by_id_[id];
   poses.frames.push_back(place.frame);
   poses.stamps_s.push_back(place.stamp_s);
-  poses.T_world_body.push_back(object.T_map_object);
+  poses.T_world_body.push_back(T_map_object);
 }
 
 void ObjectTrajectories::write(const std::filesystem::path& folder) const {

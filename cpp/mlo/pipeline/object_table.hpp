@@ -26,7 +26,7 @@ std::string object_table_row(const ObjectRow& place, const TrackedObject& object
 /// Collects the map poses of reported objects, by id, and writes them as TUM files.
 class ObjectTrajectories {
  public:
-  void add(const ObjectRow& place, const TrackedObject& object);
+  void add(const ObjectRow& place, long id, const SE3& T_map_object);
   bool contains(long id) const { return by_id_.contains(id); }
   /// FOLDER/00012.txt for the object with id 12; the folder is made if missing.
   /// @throws InputError when a file cannot be written

@@ -158,6 +158,7 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
     result.finished_objects = trajectories_.take_finished();
   });
   State next;
+  next.frame = prepared.frame;
   next.stamp_s = prepared.stamp_s;
   next.T_odom_lidar = state_.T_odom_lidar * T_odometry;
   next.T_map_lidar = T_map_lidar;
@@ -254,7 +255,7 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
     clear_maps();
     const SweepMotion motion = SweepMotion::from_increment(guess.T_previous_current, timing);
     insert_in_local_maps(*state_.unplaced, motion, state_.T_map_lidar);
-    static_map_.insert(*state_.unplaced, motion, state_.T_map_lidar);
+    static_map_.insert(*state_.unplaced, motion, state_.T_map_lidar, {}, {}, state_.frame);
     refined = refine(terms, guess, config);
   }
   return refined;
@@ -321,7 +322,7 @@ std::vector<UnknownMover> Pipeline::update_static_map(const Scan& scan, const Pe
                                                       const SweepMotion& motion, const SE3& T_map_lidar,
                                                       std::span<const TrackedObject> objects) {
   FoundMovers unknown = find_unknown_movers(scan, seen, motion, T_map_lidar);
-  static_map_.insert(seen, motion, T_map_lidar, boxes_of_moving(objects), unknown.columns);
+  static_map_.insert(seen, motion, T_map_lidar, boxes_of_moving(objects), unknown.columns, scan.frame);
   const auto is_turn = [&](int every) {
     return every > 0 && scan.frame % static_cast<std::size_t>(every) == 0;
   };

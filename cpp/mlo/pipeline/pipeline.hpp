@@ -59,6 +59,7 @@ class Pipeline {
     bool empty = true;
     bool placed = false;        ///< in the map: from the first scan on, or once it was found in a saved one
     bool motion_known = false;  ///< false until a first increment was estimated, and after a failure
+    std::size_t frame = 0;
     double stamp_s = 0.0;
     SE3 T_odom_lidar;         ///< at the reference time of the last scan
     SE3 T_map_lidar;          ///< the same, refined
@@ -68,8 +69,9 @@ class Pipeline {
     std::vector<Detection> likely_objects;  ///< the detector's, for the next scan to look back at
     std::optional<Percept> unplaced;  ///< the first scan while its motion, and so its distortion, is unknown
     static void archive(auto& self, auto& bytes) {
-      bytes(self.empty, self.placed, self.motion_known, self.stamp_s, self.T_odom_lidar, self.T_map_lidar,
-            self.T_sweep, self.reference, self.scans_lost, self.likely_objects, self.unplaced);
+      bytes(self.empty, self.placed, self.motion_known, self.frame, self.stamp_s, self.T_odom_lidar,
+            self.T_map_lidar, self.T_sweep, self.reference, self.scans_lost, self.likely_objects,
+            self.unplaced);
     }
   };
 

@@ -10,6 +10,8 @@
 #include "mlo/io/atomic_file.hpp"
 #include "mlo/io/detection_check.hpp"
 #include "mlo/pipeline/checkpoint.hpp"
+#include "mlo/pipeline/close_loops.hpp"
+#include "mlo/pipeline/move_results.hpp"
 #include "mlo/pipeline/pipeline.hpp"
 #include "mlo/pipeline/run_output.hpp"
 #include "mlo/pipeline/run_report.hpp"
@@ -157,6 +159,7 @@ class Run {
 
  private:
   void begin();
+  void correct(RunSummary& summary, std::vector<MapPoint>& map) const;
   bool load();
   void save();
   void take(const ScanReading& reading);
@@ -268,6 +271,20 @@ void Run::take_all(const std::function<void(std::size_t, std::size_t)>& on_scan,
   }
 }
 
+// Where the robot came back to places, all results are moved accordingly. Half of them moved are nothing to
+// go on from: a run that is killed here begins anew.
+void Run::correct(RunSummary& summary, std::vector<MapPoint>& map) const {
+  const SceneFile scene(options_.out / "scene.mlo");
+  const ClosedLoops closed = close_loops(scene, config_);
+  summary.loops = closed.loops;
+  if (closed.loops == 0) return;
+  std::map<std::size_t, SE3> by_frame;
+  for (std::size_t i = 0; i < scene.num_scans(); ++i) by_frame[scene.scan(i).frame] = closed.corrections[i];
+  map = pipeline_.static_map().moved_points(by_frame);
+  std::filesystem::remove(state_file());
+  move_results(options_.out, closed.corrections, map, dataset_.calibration.T_camera0_lidar, config_.scene);
+}
+
 // What is written once, at the end.
 RunSummary Run::finish() {
   RunSummary summary = progress_.summary;
@@ -276,11 +293,12 @@ RunSummary Run::finish() {
     save();  // to go on from here
   }
   if (saving_.valid()) saving_.get();
-  const std::vector<MapPoint> map = pipeline_.static_map().points();
+  std::vector<MapPoint> map = pipeline_.static_map().points();
   output_->write_map(map);
   output_->write_object_trajectories();
   output_->write_object_maps(pipeline_.object_maps());
   output_->finish();
+  if (config_.loop_closure.enabled && !summary.interrupted) correct(summary, map);
   summary.map_points = map.size();
   if (summary.skipped > kMaxListedProblems) {
     summary.warnings.push_back(fmt::format("{} more scans were skipped; per_scan.csv lists all",

@@ -41,6 +41,7 @@ struct RunSummary {
   std::string boxes_from = "none";  ///< given, or the detector that found them
   double path_m = 0.0;
   std::size_t map_points = 0;
+  std::size_t loops = 0;  ///< that were closed at the end
   bool interrupted = false;
   std::vector<StageTimes> times;      ///< one per processed scan
   std::vector<std::string> warnings;  ///< one sentence each
@@ -48,7 +49,7 @@ struct RunSummary {
   static void archive(auto& self, auto& bytes) {  // core/archive.hpp
     bytes(self.scans, self.processed, self.skipped, self.predicted, self.degenerate, self.odometry_degenerate,
           self.failed_checks, self.invalid_points, self.detections, self.boxes_from, self.path_m,
-          self.map_points, self.interrupted, self.times, self.warnings);
+          self.map_points, self.loops, self.interrupted, self.times, self.warnings);
   }
 };
 

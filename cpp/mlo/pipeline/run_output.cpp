@@ -142,7 +142,7 @@ void RunOutput::write_objects(const FrameResult& result) {
   for (const TrackedObject& object : result.objects) {
     if (!object.reported) continue;
     write_row(kObjects, object_table_row(place, object));
-    object_trajectories_.add(place, object);
+    object_trajectories_.add(place, object.id, object.T_map_object);
   }
 }
 

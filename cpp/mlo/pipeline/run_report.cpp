@@ -79,6 +79,7 @@ std::string to_json(const Dataset& dataset, const PipelineConfig& config, const 
       {"detections", summary.detections},
       {"path_m", summary.path_m},
       {"static_map_points", summary.map_points},
+      {"loops", summary.loops},
       {"interrupted", summary.interrupted},
       {"times", stages},
       {"peak_memory_mib", peak_memory_mib()},

@@ -104,7 +104,7 @@ void write_object_trajectories(const std::filesystem::path& folder, std::span<co
   ObjectTrajectories trajectories;
   for (const FrameTracks& frame : frames) {
     for (const TrackedObject& object : frame.objects) {
-      if (object.reported) trajectories.add({frame.frame, frame.stamp_s}, object);
+      if (object.reported) trajectories.add({frame.frame, frame.stamp_s}, object.id, object.T_map_object);
     }
   }
   trajectories.write(folder);

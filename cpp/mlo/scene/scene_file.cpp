@@ -57,6 +57,12 @@ std::vector<MapPoint> SceneFile::map() const {
   return points;
 }
 
+std::vector<long> SceneFile::objects() const {
+  std::vector<long> ids;
+  for (const auto& [id, chunk] : objects_) ids.push_back(id);
+  return ids;
+}
+
 SceneCloud SceneFile::object(long id) const {
   const auto found = objects_.find(id);
   return found == objects_.end() ? SceneCloud() : decode_cloud(file_.payload(found->second), source());

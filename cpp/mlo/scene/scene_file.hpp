@@ -33,6 +33,8 @@ class SceneFile {
   /// The shape of an object, in its own frame; empty where the file has none: the object may still have been
   /// in sight when the run was killed.
   SceneCloud object(long id) const;
+  /// Ids of the objects whose shapes it has.
+  std::vector<long> objects() const;
 
   /// Bytes of all chunks of a type, as stored.
   std::uint64_t stored_bytes(ChunkType type) const;
