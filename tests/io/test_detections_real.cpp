@@ -21,7 +21,7 @@ using test::kNoRealData;
 using test::real_data;
 using ::testing::HasSubstr;
 
-constexpr double kNoStamp = 0.0;  // KITTI's detections go by frames
+constexpr double kAnyStamp_s = 0.0;  // KITTI's detections go by frames
 const Eigen::Vector2d kImageSize_px(1242.0, 375.0);
 
 struct Sequence {
@@ -52,7 +52,7 @@ DetectionCheck check(
   for (const Scan& scan : scans) {
     ScanWithDetections& one = input.emplace_back();
     one.points = scan.points;
-    for (const DetectionRecord& record : list.at(scan.frame, kNoStamp)) {
+    for (const DetectionRecord& record : list.at(scan.frame, kAnyStamp_s)) {
       one.detections.push_back(record.detection);
       mistake(one.detections.back().box);
     }

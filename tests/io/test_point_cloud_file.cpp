@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 /// Writes the text and reads it as a cloud.
-PointCloudFile read_text(const std::string& name, const std::string& text) {
+PointCloudFile read_cloud_text(const std::string& name, const std::string& text) {
   const TempFolder folder;
   folder.write(name, text);
   return read_point_cloud(folder.path() / name);
@@ -144,7 +144,7 @@ std::string ply_of_times(const std::string& type, const std::string& lines) {
 
 TEST(PointCloudFile, ReadsWindowsLineEndsOddTypesAndSkipsWideFields) {
   const PointCloudFile cloud =
-      read_text("a.pcd",
+      read_cloud_text("a.pcd",
                 "# comment\r\nVERSION .7\r\nFIELDS histogram z y x channel reflectivity\r\n"
                 "SIZE 4 2 8 4 1 2\r\nTYPE F I F I U U\r\nCOUNT 3 1 1 1 1 1\r\nWIDTH 2\r\n"
                 "HEIGHT 1\r\nDATA ascii\r\n9 9 9 -3 2.5 1 7 40000\r\n\r\n"
@@ -166,14 +166,14 @@ TEST(PointCloudFile, SkipsElementsAndListsBeforeTheBinaryPoints) {
   const std::string faces = "\x02\x00\x01\x00\x02\x09"s + "\x00\x09"s;
   const std::string vertex = "\x00\x00\x00\x01\x3f\x80\x00\x00"s + "\xc0\x04\x00\x00\x00\x00\x00\x00"s +
                              "\xff\xfe"s + "\x05"s + "\x00\x00\x00\x00\x00\x00\x01\x00"s;
-  const PointCloudFile cloud = read_text("a.ply", header + faces + vertex);
+  const PointCloudFile cloud = read_cloud_text("a.ply", header + faces + vertex);
   ASSERT_EQ(cloud.points.size(), 1U);
   EXPECT_EQ(cloud.points[0].p_lidar, Eigen::Vector3f(-2.5F, -2.0F, 5.0F));
   EXPECT_DOUBLE_EQ(cloud.times_s[0], 256e-9);
 }
 
 TEST(PointCloudFile, LeavesOutAndCountsWhatIsNotANumber) {
-  const PointCloudFile cloud = read_text(
+  const PointCloudFile cloud = read_cloud_text(
       "a.ply",
       ply_of_times("double", "nan 0 0 0\n0 inf 0 0\n0 0 -1.#IND 0\n1e300 0 0 0\n1 2 3 nan\n1 2 3 0.05\n"));
   EXPECT_EQ(cloud.invalid_points, 5U);
@@ -183,7 +183,7 @@ TEST(PointCloudFile, LeavesOutAndCountsWhatIsNotANumber) {
 
 TEST(PointCloudFile, RecognisesTheUnitOfTimes) {
   const auto unit_s = [](const std::string& type, const std::string& first, const std::string& last) {
-    return read_text("a.ply", ply_of_times(type, "1 2 3 " + first + "\n1 2 3 " + last + "\n")).time_unit_s;
+    return read_cloud_text("a.ply", ply_of_times(type, "1 2 3 " + first + "\n1 2 3 " + last + "\n")).time_unit_s;
   };
   EXPECT_EQ(unit_s("float", "-0.1", "0"), 1.0);
   EXPECT_EQ(unit_s("double", "1700000000.00", "1700000000.05"), 1.0);
@@ -197,19 +197,19 @@ TEST(PointCloudFile, RecognisesTheUnitOfTimes) {
   EXPECT_EQ(unit_s("double", "1.7e12", "1.7e12"), 1e-3);
   EXPECT_EQ(unit_s("double", "1.7e9", "1.7e9"), 1.0);
   EXPECT_EQ(unit_s("uint", "5", "5"), 1e-9);
-  EXPECT_EQ(read_text("a.ply", ply_of_times("float", "")).time_unit_s, 1.0);
+  EXPECT_EQ(read_cloud_text("a.ply", ply_of_times("float", "")).time_unit_s, 1.0);
 }
 
 TEST(PointCloudFile, AnEmptyCloudIsNoError) {
   const std::string header =
       "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 0\nPOINTS 0\nDATA ";
   for (const std::string encoding : {"ascii\n", "binary\n", "binary_compressed\n"}) {
-    EXPECT_TRUE(read_text("a.pcd", header + encoding).points.empty()) << encoding;
+    EXPECT_TRUE(read_cloud_text("a.pcd", header + encoding).points.empty()) << encoding;
   }
 }
 
 void expect_problem(const std::string& name, const std::string& text, const std::string& problem) {
-  EXPECT_THAT([&] { read_text(name, text); },
+  EXPECT_THAT([&] { read_cloud_text(name, text); },
               ThrowsMessage<InputError>(AllOf(HasSubstr(name), HasSubstr(problem))));
 }
 

@@ -8,6 +8,7 @@
 namespace mlo::test {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;
+inline constexpr double kDt_s = 0.1;  // between scans
 
 /// A car's box on the ground, 1.7 m below the lidar.
 inline Box3d car_box(double x_m, double y_m, double yaw_rad = 0.0) {

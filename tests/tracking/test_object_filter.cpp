@@ -10,9 +10,9 @@ namespace mlo {
 namespace {
 
 using test::kDegree;
+using test::kDt_s;
 using test::placed_car;
 
-constexpr double kDt_s = 0.1;
 
 BoxMeasurement measured(const PlacedBox& box) {
   return {.box = box,

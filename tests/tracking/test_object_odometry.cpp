@@ -13,8 +13,8 @@ namespace mlo {
 namespace {
 
 using test::kDegree;
+using test::kDt_s;
 
-constexpr double kDt_s = 0.1;
 constexpr SweepTiming kCompensated{.motion_compensated = true};
 
 SE3 lidar_pose(int scan) {

@@ -12,8 +12,8 @@ namespace {
 
 using test::car;
 using test::kDegree;
+using test::kDt_s;
 
-constexpr double kDt_s = 0.1;
 
 const TrackedObject* find(const std::vector<TrackedObject>& objects, long id) {
   for (const TrackedObject& object : objects) {

@@ -1,18 +1,15 @@
 #include "mlo/evaluation/clear_mot.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "mlo/core/assignment.hpp"
+#include "mlo/evaluation/measures.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kKeepBonus = 1000.0;  // outweighs any sum of similarities in a frame
-constexpr double kMostlyTracked = 0.8;
-constexpr double kMostlyLost = 0.2;
 
 // What is remembered of each true object while going through the frames.
 struct ObjectState {
@@ -22,10 +19,6 @@ struct ObjectState {
   std::optional<std::size_t> last_track;        // ever
   std::optional<std::size_t> last_frame_track;  // in the last frame that had both truth and tracks
 };
-
-double ratio(double numerator, std::size_t denominator) {
-  return numerator / static_cast<double>(std::max<std::size_t>(1, denominator));
-}
 
 std::vector<Assignment> match(const TrackingFrame& frame, const std::vector<ObjectState>& objects,
                               double threshold) {

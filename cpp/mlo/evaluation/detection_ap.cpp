@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "mlo/core/box_overlap.hpp"
+#include "mlo/evaluation/measures.hpp"
 #include "mlo/evaluation/tracking_protocol.hpp"
 
 namespace mlo {
@@ -174,10 +175,6 @@ std::vector<double> thresholds(std::vector<double> confidences, std::size_t num_
   return chosen;
 }
 
-double ratio(std::size_t part, std::size_t all) {
-  return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
-}
-
 }  // namespace
 
 AveragePrecision average_precision(std::span<const DetectionFrame> frames, const DetectionProtocol& protocol,
@@ -189,13 +186,13 @@ AveragePrecision average_precision(std::span<const DetectionFrame> frames, const
   result.num_truth = demanded(prepared);
   if (result.num_truth == 0) return result;
   const Counts all = count(prepared, protocol.min_overlap, kAnyConfidence, Prefer::confidence);
-  result.recall = ratio(all.true_positives, result.num_truth);
+  result.recall = ratio(static_cast<double>(all.true_positives), result.num_truth);
   // the first of the thresholds stands for recall 0, which the mean leaves out
   std::array<double, kPoints + 1> precision = {};
   const std::vector<double> levels = thresholds(all.confidences, result.num_truth);
   for (std::size_t i = 0; i < std::min(levels.size(), precision.size()); ++i) {
     const Counts counts = count(prepared, protocol.min_overlap, levels[i], Prefer::overlap);
-    precision[i] = ratio(counts.true_positives, counts.true_positives + counts.false_positives);
+    precision[i] = ratio(static_cast<double>(counts.true_positives), counts.true_positives + counts.false_positives);
   }
   for (std::size_t i = kPoints; i > 0; --i) precision[i - 1] = std::max(precision[i - 1], precision[i]);
   std::copy(precision.begin() + 1, precision.end(), result.precision.begin());

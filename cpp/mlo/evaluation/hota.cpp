@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mlo/core/assignment.hpp"
+#include "mlo/evaluation/measures.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 using Index = Eigen::Index;
 using Matrices = std::array<Eigen::MatrixXd, kNumHotaThresholds>;
@@ -96,10 +95,6 @@ void add_associations(const Eigen::MatrixXd& matches, const BoxCounts& boxes, Ho
       counts.association_precision_sum += shared * shared / boxes.track(col);
     }
   }
-}
-
-double ratio(double numerator, std::size_t denominator) {
-  return numerator / static_cast<double>(std::max<std::size_t>(1, denominator));
 }
 
 double detection_accuracy(const HotaCounts& c) {

@@ -5,23 +5,18 @@
 #include <map>
 
 #include "mlo/core/assignment.hpp"
+#include "mlo/evaluation/measures.hpp"
 
 namespace mlo {
 namespace {
 
 constexpr double kNeverMatch = 1e6;  // more than the costs of a frame's matches together
-constexpr double kMostlyTracked = 0.8;
-constexpr double kMostlyLost = 0.2;
 constexpr std::size_t kRecallSteps = 40;
 
 std::vector<std::string> kit_neighbors(const std::string& object_class) {
   if (object_class == "car") return {"van"};
   if (object_class == "pedestrian") return {"person_sitting"};
   return {};
-}
-
-double ratio(double numerator, std::size_t denominator) {
-  return numerator / static_cast<double>(std::max<std::size_t>(1, denominator));
 }
 
 // A true object in one of the frames that it is in.

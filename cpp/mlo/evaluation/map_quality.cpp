@@ -14,11 +14,11 @@
 namespace mlo {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct LocalShape {
-  double entropy = kNone;
-  double thickness_m = kNone;  // only of planar neighbourhoods
+  double entropy = kUnknown;
+  double thickness_m = kUnknown;  // only of planar neighbourhoods
 };
 
 LocalShape shape_at(const PointTree& tree, const PointCloud& cloud, std::size_t index,

@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "mlo/core/assignment.hpp"
+#include "mlo/evaluation/measures.hpp"
 #include "mlo/evaluation/trajectory_error.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kForbidden = 1e9;  // more than all distances of a frame together
 
-using Index = std::size_t;
+using Place = std::size_t;
 
 // Poses of one object by frame.
 struct Life {
@@ -47,9 +46,9 @@ double distance_m(const SE3& a, const SE3& b) {
 }
 
 // In which frames which objects are.
-std::map<std::size_t, std::vector<Index>> present(const std::vector<Life>& lives) {
-  std::map<std::size_t, std::vector<Index>> frames;
-  for (Index i = 0; i < lives.size(); ++i) {
+std::map<std::size_t, std::vector<Place>> present(const std::vector<Life>& lives) {
+  std::map<std::size_t, std::vector<Place>> frames;
+  for (Place i = 0; i < lives.size(); ++i) {
     for (const auto& [frame, pose] : lives[i].T_map_object) frames[frame].push_back(i);
   }
   return frames;
@@ -61,11 +60,11 @@ Eigen::MatrixXd agreeing_frames(const std::vector<Life>& objects, const std::vec
   Eigen::MatrixXd agreement = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(objects.size()),
                                                     static_cast<Eigen::Index>(tracks.size()));
   const auto tracks_in = present(tracks);
-  for (Index i = 0; i < objects.size(); ++i) {
+  for (Place i = 0; i < objects.size(); ++i) {
     for (const auto& [frame, pose] : objects[i].T_map_object) {
       const auto here = tracks_in.find(frame);
       if (here == tracks_in.end()) continue;
-      for (const Index j : here->second) {
+      for (const Place j : here->second) {
         if (distance_m(pose, tracks[j].T_map_object.at(frame)) > gate_m) continue;
         agreement(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += 1.0;
       }
@@ -75,23 +74,23 @@ Eigen::MatrixXd agreeing_frames(const std::vector<Life>& objects, const std::vec
 }
 
 // The track of each object for its whole life.
-std::map<Index, Index> assign_lives(const Eigen::MatrixXd& agreement) {
-  std::map<Index, Index> track_of;
+std::map<Place, Place> assign_lives(const Eigen::MatrixXd& agreement) {
+  std::map<Place, Place> track_of;
   for (const auto& [row, col] : optimal_assignment(-agreement)) {
-    if (agreement(row, col) > 0.0) track_of.emplace(static_cast<Index>(row), static_cast<Index>(col));
+    if (agreement(row, col) > 0.0) track_of.emplace(static_cast<Place>(row), static_cast<Place>(col));
   }
   return track_of;
 }
 
 // Which track covers which object in one frame: the one of the frame before if it still does, then the
 // nearest ones.
-std::map<Index, Index> cover(const std::vector<Index>& object_ids, const std::vector<Index>& track_ids,
+std::map<Place, Place> cover(const std::vector<Place>& object_ids, const std::vector<Place>& track_ids,
                              const std::vector<Life>& objects, const std::vector<Life>& tracks,
-                             std::size_t frame, const std::map<Index, Index>& before, double gate_m) {
+                             std::size_t frame, const std::map<Place, Place>& before, double gate_m) {
   Eigen::MatrixXd cost(static_cast<Eigen::Index>(object_ids.size()),
                        static_cast<Eigen::Index>(track_ids.size()));
-  for (Index i = 0; i < object_ids.size(); ++i) {
-    for (Index j = 0; j < track_ids.size(); ++j) {
+  for (Place i = 0; i < object_ids.size(); ++i) {
+    for (Place j = 0; j < track_ids.size(); ++j) {
       const double apart_m = distance_m(objects[object_ids[i]].T_map_object.at(frame),
                                         tracks[track_ids[j]].T_map_object.at(frame));
       const auto last = before.find(object_ids[i]);
@@ -101,25 +100,25 @@ std::map<Index, Index> cover(const std::vector<Index>& object_ids, const std::ve
           apart_m <= gate_m ? cost_m : kForbidden;
     }
   }
-  std::map<Index, Index> covered;
+  std::map<Place, Place> covered;
   for (const auto& [row, col] : optimal_assignment(cost)) {
     if (cost(row, col) >= kForbidden) continue;
-    covered.emplace(object_ids[static_cast<Index>(row)], track_ids[static_cast<Index>(col)]);
+    covered.emplace(object_ids[static_cast<Place>(row)], track_ids[static_cast<Place>(col)]);
   }
   return covered;
 }
 
 // Counts frame by frame: tracked, covered by another, missed, switched.
 void count_frames(const std::vector<Life>& objects, const std::vector<Life>& tracks,
-                  const std::map<Index, Index>& track_of, double gate_m, std::vector<ObjectErrors>& errors) {
+                  const std::map<Place, Place>& track_of, double gate_m, std::vector<ObjectErrors>& errors) {
   const auto tracks_in = present(tracks);
-  std::map<Index, Index> last_track;
-  std::map<Index, Index> before;
+  std::map<Place, Place> last_track;
+  std::map<Place, Place> before;
   for (const auto& [frame, here] : present(objects)) {
     const auto found = tracks_in.find(frame);
-    const std::vector<Index> tracks_here = found == tracks_in.end() ? std::vector<Index>{} : found->second;
+    const std::vector<Place> tracks_here = found == tracks_in.end() ? std::vector<Place>{} : found->second;
     before = cover(here, tracks_here, objects, tracks, frame, before, gate_m);
-    for (const Index object : here) {
+    for (const Place object : here) {
       ObjectErrors& error = errors[object];
       const auto covering = before.find(object);
       if (covering == before.end()) {
@@ -145,14 +144,14 @@ struct RelativeErrors {
 // From each pair to the first one that the object has travelled far enough to reach.
 RelativeErrors relative_errors(const std::vector<PosePair>& pairs, double subpath_m) {
   std::vector<double> travelled_m(pairs.size(), 0.0);
-  for (Index i = 1; i < pairs.size(); ++i) {
+  for (Place i = 1; i < pairs.size(); ++i) {
     travelled_m[i] = travelled_m[i - 1] + distance_m(pairs[i - 1].T_world_truth, pairs[i].T_world_truth);
   }
   RelativeErrors sum;
-  for (Index i = 0; i < pairs.size(); ++i) {
+  for (Place i = 0; i < pairs.size(); ++i) {
     const auto end = std::lower_bound(travelled_m.begin(), travelled_m.end(), travelled_m[i] + subpath_m);
     if (end == travelled_m.end()) break;
-    const auto j = static_cast<Index>(end - travelled_m.begin());
+    const auto j = static_cast<Place>(end - travelled_m.begin());
     const SE3 truth = pairs[i].T_world_truth.inverse() * pairs[j].T_world_truth;
     const SE3 track = pairs[i].T_world_estimate.inverse() * pairs[j].T_world_estimate;
     const SE3 error = truth.inverse() * track;
@@ -206,7 +205,7 @@ ObjectEvaluation evaluate_objects(std::span<const ObjectPose> truth, std::span<c
                                   const ObjectTrajectoryOptions& options) {
   const std::vector<Life> objects = lives_of(truth, options.min_points);
   const std::vector<Life> lives = lives_of(tracks, 0);
-  const std::map<Index, Index> track_of =
+  const std::map<Place, Place> track_of =
       assign_lives(agreeing_frames(objects, lives, options.max_distance_m));
 
   ObjectEvaluation evaluation;
@@ -219,12 +218,12 @@ ObjectEvaluation evaluate_objects(std::span<const ObjectPose> truth, std::span<c
     evaluation.objects.push_back(std::move(error));
   }
   count_frames(objects, lives, track_of, options.max_distance_m, evaluation.objects);
-  std::set<Index> given;
+  std::set<Place> given;
   for (const auto& [object, track] : track_of) {
     given.insert(track);
     measure(objects[object], lives[track], options.subpath_m, evaluation.objects[object]);
   }
-  for (Index i = 0; i < lives.size(); ++i) {
+  for (Place i = 0; i < lives.size(); ++i) {
     if (!given.contains(i)) evaluation.tracks_without_object.push_back(lives[i].id);
   }
   return evaluation;

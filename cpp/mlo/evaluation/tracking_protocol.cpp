@@ -1,7 +1,6 @@
 #include "mlo/evaluation/tracking_protocol.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -10,11 +9,11 @@
 #include "mlo/core/assignment.hpp"
 #include "mlo/core/box_overlap.hpp"
 #include "mlo/core/error.hpp"
+#include "mlo/evaluation/measures.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr const char* kDontCare = "dontcare";
 
 bool takes_part(const ObjectRecord& record, const std::string& object_class,

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 #include <Eigen/SVD>
 
+#include "mlo/evaluation/measures.hpp"
+
 namespace mlo {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kSpeedBinStep_m_s = 2.0;
 constexpr double kMaxBinnedSpeed_m_s = 100.0;
 

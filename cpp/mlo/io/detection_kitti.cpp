@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kNone = 999;  // a column that a format does not have
 
 /// Where things are in a row. The image box takes four columns; h, w, l and x, y, z three each.
-struct Layout {
+struct RowLayout {
   std::string_view name;
   char separator;
   std::size_t columns;
@@ -28,7 +28,7 @@ struct Layout {
   std::size_t score;
 };
 
-constexpr Layout kLayouts[] = {
+constexpr RowLayout kRowLayouts[] = {
     {"AB3DMOT", ',', 15, 0, 1, 14, 2, 7, 10, 13, 6},
     {"KITTI tracking label", ' ', 17, 0, 2, 5, 6, 10, 13, 16, kNone},
     {"KITTI tracking result", ' ', 18, 0, 2, 5, 6, 10, 13, 16, 17},
@@ -44,8 +44,8 @@ Cells split(std::string_view line, char separator) {
 }
 
 /// The format whose columns fit; the class is a word in all but AB3DMOT's, where it is a number.
-const Layout* recognise(std::string_view line) {
-  for (const Layout& layout : kLayouts) {
+const RowLayout* recognise(std::string_view line) {
+  for (const RowLayout& layout : kRowLayouts) {
     const Cells cells = split(line, layout.separator);
     if (cells.size() != layout.columns) continue;
     const bool word = !parse_number(cells[layout.type]).has_value();
@@ -54,7 +54,7 @@ const Layout* recognise(std::string_view line) {
   return nullptr;
 }
 
-ObjectClass class_of(std::string_view cell, const Layout& layout, const Place& place) {
+ObjectClass class_of(std::string_view cell, const RowLayout& layout, const Place& place) {
   if (layout.separator != ',') return parse_class(cell, place);
   if (cell == "1") return ObjectClass::pedestrian;
   if (cell == "2") return ObjectClass::car;
@@ -62,7 +62,7 @@ ObjectClass class_of(std::string_view cell, const Layout& layout, const Place& p
   place.fail(fmt::format("type {} is not known", cell), "use 1 pedestrian, 2 car or 3 cyclist");
 }
 
-ParsedDetection parse_row(const Cells& cells, const Layout& layout, std::optional<std::size_t> file_frame,
+ParsedDetection parse_row(const Cells& cells, const RowLayout& layout, std::optional<std::size_t> file_frame,
                           const SE3& T_camera0_lidar, const Place& place) {
   const auto number = [&](std::size_t column, std::string_view what) {
     return parse_finite(cells[column], what, place);
@@ -95,7 +95,7 @@ ParsedDetection parse_row(const Cells& cells, const Layout& layout, std::optiona
 bool is_file_per_frame(std::string_view text) {
   for (auto line = line_at(text, 0); line; line = line_at(text, line->next_offset)) {
     if (is_blank(line->text)) continue;
-    const Layout* const layout = recognise(line->text);
+    const RowLayout* const layout = recognise(line->text);
     return layout != nullptr && layout->frame == kNone;
   }
   return false;
@@ -105,7 +105,7 @@ std::vector<ParsedDetection> parse_kitti_detections(const std::filesystem::path&
                                                     std::optional<std::size_t> file_frame,
                                                     const Calibration& calibration) {
   std::vector<ParsedDetection> detections;
-  const Layout* layout = nullptr;
+  const RowLayout* layout = nullptr;
   Place place{path, 0};
   for (auto line = line_at(text, 0); line; line = line_at(text, line->next_offset)) {
     ++place.line;

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The object benchmark also has velodyne/NNNNNN.bin, but neither of the two files nor a number for a name.
-bool is_sequence(const fs::path& folder) {
+bool is_odometry_sequence(const fs::path& folder) {
   return holds_files(folder / "velodyne", ".bin") &&
          (fs::exists(folder / "times.txt") || fs::exists(folder / "calib.txt") ||
           parse_count(folder.filename().string()));
@@ -36,7 +36,7 @@ std::vector<SequenceFolder> find_kitti_odometry(const fs::path& folder) {
   std::vector<SequenceFolder> sequences;
   for (const fs::path& candidate : candidates) {
     const std::string name = candidate.filename().string();
-    if (is_sequence(candidate)) sequences.push_back({name, parse_count(name), candidate});
+    if (is_odometry_sequence(candidate)) sequences.push_back({name, parse_count(name), candidate});
   }
   return sequences;
 }

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_sequence(const fs::path& folder) {
+bool is_tracking_sequence(const fs::path& folder) {
   return folder.parent_path().filename() == "velodyne" && parse_count(folder.filename().string()) &&
          holds_files(folder, ".bin");
 }
@@ -38,7 +38,7 @@ std::vector<SequenceFolder> find_kitti_tracking(const fs::path& folder) {
   std::vector<SequenceFolder> sequences;
   for (const fs::path& candidate : candidates) {
     const std::string name = candidate.filename().string();
-    if (is_sequence(candidate)) sequences.push_back({name, parse_count(name), candidate});
+    if (is_tracking_sequence(candidate)) sequences.push_back({name, parse_count(name), candidate});
   }
   return sequences;
 }

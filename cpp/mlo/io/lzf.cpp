@@ -17,7 +17,7 @@ constexpr std::size_t kMinMatch = 3;
 constexpr std::size_t kMaxMatch = 264;
 constexpr std::size_t kLongLength = 7;  // value of LLL that announces a length byte
 constexpr int kHashBits = 14;
-constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::uint32_t kNotSeen = 0xFFFFFFFF;
 
 std::uint32_t hash3(const char* p) {
   const auto byte = [p](int i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(p[i])); };
@@ -52,7 +52,7 @@ std::size_t match_length(std::string_view bytes, std::size_t earlier, std::size_
 
 std::string lzf_compress(std::string_view bytes) {
   std::vector<std::uint32_t> latest(std::size_t{1} << kHashBits,
-                                    kNone);  // position of the latest such triple
+                                    kNotSeen);  // position of the latest such triple
   std::string out;
   std::size_t literals_begin = 0;
   std::size_t i = 0;
@@ -60,7 +60,7 @@ std::string lzf_compress(std::string_view bytes) {
     std::uint32_t& entry = latest[hash3(&bytes[i])];
     const std::size_t earlier = entry;
     entry = static_cast<std::uint32_t>(i);
-    const bool near = earlier != kNone && i - earlier <= kMaxOffset;
+    const bool near = earlier != kNotSeen && i - earlier <= kMaxOffset;
     const std::size_t length = near ? match_length(bytes, earlier, i) : 0;
     if (length < kMinMatch) {
       ++i;

@@ -17,7 +17,7 @@ namespace mlo {
 namespace {
 
 // Files with few digits are off by 1e-3; anything beyond this is not a rotation at all.
-constexpr double kRotationTolerance = 1e-2;
+constexpr double kUnitTolerance = 1e-2;
 constexpr std::array<std::string_view, 3> kSize{"length_m", "width_m", "height_m"};
 
 // One row, whose cells are asked for by the names of the header.
@@ -67,7 +67,7 @@ class Row {
 SE3 parse_pose(const Row& row) {
   const Eigen::Quaterniond rotation(row.needed_number("qw"), row.needed_number("qx"), row.needed_number("qy"),
                                     row.needed_number("qz"));
-  if (!(std::abs(rotation.norm() - 1.0) < kRotationTolerance)) row.fail("qx, qy, qz, qw are no rotation");
+  if (!(std::abs(rotation.norm() - 1.0) < kUnitTolerance)) row.fail("qx, qy, qz, qw are no rotation");
   return {rotation, {row.needed_number("x_m"), row.needed_number("y_m"), row.needed_number("z_m")}};
 }
 

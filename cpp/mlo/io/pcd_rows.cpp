@@ -142,7 +142,7 @@ std::size_t points_of(const Entries& entries, const HeaderError& fail) {
   return *width * height;
 }
 
-PcdHeader read_header(const std::filesystem::path& path, std::string_view bytes) {
+PcdHeader read_pcd_header(const std::filesystem::path& path, std::string_view bytes) {
   const HeaderError fail(path);
   PcdHeader header;
   const Entries entries = read_entries(bytes, header, fail);
@@ -194,7 +194,7 @@ std::string decompressed_rows(const std::filesystem::path& path, std::string_vie
 }  // namespace
 
 void read_pcd_rows(const std::filesystem::path& path, std::string_view bytes, const RowSink& sink) {
-  const PcdHeader header = read_header(path, bytes);
+  const PcdHeader header = read_pcd_header(path, bytes);
   if (header.encoding == "ascii") {
     TextCursor cursor(path, bytes, header.data_offset, header.lines);
     read_points(cursor, header.columns, header.points, sink, path);

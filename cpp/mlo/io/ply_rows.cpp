@@ -88,7 +88,7 @@ bool take_line(const Words& words, PlyHeader& header) {
   return false;
 }
 
-PlyHeader read_header(const std::filesystem::path& path, std::string_view bytes) {
+PlyHeader read_ply_header(const std::filesystem::path& path, std::string_view bytes) {
   PlyHeader header;
   for (;;) {
     const auto line = line_at(bytes, header.data_offset);
@@ -125,7 +125,7 @@ void read_elements(Cursor cursor, const PlyHeader& header, const std::filesystem
 }  // namespace
 
 void read_ply_rows(const std::filesystem::path& path, std::string_view bytes, const RowSink& sink) {
-  const PlyHeader header = read_header(path, bytes);
+  const PlyHeader header = read_ply_header(path, bytes);
   if (header.encoding == PlyEncoding::ascii) {
     read_elements(TextCursor(path, bytes, header.data_offset, header.lines), header, path, sink);
     return;

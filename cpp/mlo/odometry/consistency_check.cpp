@@ -23,7 +23,7 @@ struct Counts {
 };
 
 // Matches of the counted features, and the features placed where they were matched.
-struct Matches {
+struct CountedMatches {
   std::vector<LineMatch> edge;
   std::vector<PlaneMatch> ground;
   std::vector<PlaneMatch> surface;
@@ -46,7 +46,7 @@ class Check {
 
   const EgoFeatures& counted() const { return counted_; }
 
-  Matches match(const SE3& T_previous_current) const {
+  CountedMatches match(const SE3& T_previous_current) const {
     const Placement placement(T_previous_current, timing_);
     return {match_lines(counted_.edge, placement, previous_.edge, config_),
             match_planes(counted_.ground, placement, previous_.ground, config_),
@@ -55,7 +55,7 @@ class Check {
 
   // The motion by which a random sample of matches fits: half of it ground, half edges (surfaces where there
   // are not enough edges).
-  SE3 sample_motion(const Matches& matches, const SE3& T_matched, std::mt19937_64& random) const {
+  SE3 sample_motion(const CountedMatches& matches, const SE3& T_matched, std::mt19937_64& random) const {
     const Placement placement(T_matched, timing_);
     NormalEquations sums;
     const auto size = static_cast<std::size_t>(config_.consistency.sample_size);
@@ -164,7 +164,7 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
   };
 
   try_motion(T_best);
-  Matches matches;
+  CountedMatches matches;
   SE3 T_matched;
   // Nothing can gain enough once nearly all agree.
   for (int i = 0; i < config.consistency.iterations && best_count + min_gain < num_counted; ++i) {

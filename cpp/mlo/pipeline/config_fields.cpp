@@ -31,7 +31,7 @@ std::string number_text(T value) {
   }
 }
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -136,7 +136,7 @@ std::optional<std::string> list_problem(const NumberListSlot& slot) {
 std::string ConfigField::value_text() const {
   return std::visit(Overloaded{
                         [](bool* value) { return std::string(*value ? "true" : "false"); },
-                        [](std::string* value) { return quoted(*value); },
+                        [](std::string* value) { return in_quotes(*value); },
                         [](const NumberListSlot& list) {
                           std::vector<std::string> words;
                           for (const double value : *list.value) words.push_back(number_text(value));

@@ -9,7 +9,7 @@
 namespace mlo {
 namespace {
 
-constexpr std::string_view kMagic = "MLOSCENE";
+constexpr std::string_view kSceneMagic = "MLOSCENE";
 constexpr std::string_view kIndexMagic = "MLOINDEX";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::string_view kChunkMarker = "MLOC";
@@ -38,7 +38,7 @@ std::uint64_t end_of(const IndexedChunk& chunk) {
 
 ChunkFileWriter::ChunkFileWriter(const std::filesystem::path& path, int compression_level)
     : file_(path), compression_level_(compression_level) {
-  file_.append(std::string(kMagic) + archived(kVersion));
+  file_.append(std::string(kSceneMagic) + archived(kVersion));
 }
 
 ChunkFileWriter::ChunkFileWriter(const std::filesystem::path& path, int compression_level,
@@ -65,7 +65,7 @@ void ChunkFileWriter::finish() {
 
 ChunkFile::ChunkFile(const std::filesystem::path& path) : file_(path) {
   const std::string header = file_.read(0, kFileHeaderBytes);
-  if (header.size() < kFileHeaderBytes || !header.starts_with(kMagic)) {
+  if (header.size() < kFileHeaderBytes || !header.starts_with(kSceneMagic)) {
     throw InputError(
         fmt::format("{}: is no scene file; give the scene.mlo that 'mlo run' wrote", path.string()));
   }

@@ -10,7 +10,7 @@
 namespace mlo {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 constexpr std::string_view kCompression = "zstd";
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
@@ -55,7 +55,7 @@ std::string map_bytes(const std::map<Key, std::uint64_t>& map) {
 
 McapWriter::McapWriter(const std::filesystem::path& path, int compression_level)
     : file_(path), compression_level_(compression_level) {
-  put(kMagic);
+  put(kMcapMagic);
   put(record(Op::header, sized("") + sized("mlo")));
 }
 
@@ -159,7 +159,7 @@ void McapWriter::finish() {
   constexpr std::uint64_t kFooterBytes = 8 + 8 + 4;
   put(numbers(Op::footer, kFooterBytes, summary_start, offsets_start));
   put(numbers(checksum_));
-  put(kMagic);
+  put(kMcapMagic);
   file_.commit();
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kEarthRadius_m = 6378137.0;
 constexpr double kLatitude_deg = 49.0;
 constexpr double kLongitude_deg = 8.4;
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kGravity_mps2 = 9.81;
 
 struct Geographic {
@@ -19,11 +19,11 @@ struct Geographic {
 };
 
 Geographic geographic(double east_m, double north_m) {
-  const double scale = std::cos(kLatitude_deg * kDegree) * kEarthRadius_m;
-  const double origin_north = std::log(std::tan(0.25 * std::numbers::pi + 0.5 * kLatitude_deg * kDegree));
+  const double scale = std::cos(kLatitude_deg * kRadPerDeg) * kEarthRadius_m;
+  const double origin_north = std::log(std::tan(0.25 * std::numbers::pi + 0.5 * kLatitude_deg * kRadPerDeg));
   const double mercator_north = north_m / scale + origin_north;
-  return {(2.0 * std::atan(std::exp(mercator_north)) - 0.5 * std::numbers::pi) / kDegree,
-          kLongitude_deg + east_m / scale / kDegree};
+  return {(2.0 * std::atan(std::exp(mercator_north)) - 0.5 * std::numbers::pi) / kRadPerDeg,
+          kLongitude_deg + east_m / scale / kRadPerDeg};
 }
 
 }  // namespace
