@@ -13,7 +13,7 @@ namespace {
 
 using Objects = std::vector<ObjectPose>;
 
-constexpr std::size_t kFrames = 20;
+constexpr std::size_t kLifeFrames = 20;
 
 ObjectPose at(std::size_t frame, long id, double x_m, double y_m, double yaw_rad = 0.0) {
   ObjectPose object;
@@ -26,7 +26,7 @@ ObjectPose at(std::size_t frame, long id, double x_m, double y_m, double yaw_rad
 }
 
 // Cars that drive 0.5 m a frame, 10 m beside each other: ids 0 ... count - 1.
-Objects driving_cars(long count, std::size_t frames = kFrames) {
+Objects driving_cars(long count, std::size_t frames = kLifeFrames) {
   Objects objects;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     for (long id = 0; id < count; ++id) {
@@ -44,7 +44,7 @@ TEST(ObjectTrajectories, PerfectTracksHaveNoErrors) {
   EXPECT_TRUE(evaluation.tracks_without_object.empty());
   for (const ObjectErrors& object : evaluation.objects) {
     EXPECT_EQ(object.track_id, 70 - object.truth_id);
-    EXPECT_EQ(object.tracked_frames, kFrames);
+    EXPECT_EQ(object.tracked_frames, kLifeFrames);
     EXPECT_EQ(object.other_frames + object.missed_frames + object.switches, 0U);
     EXPECT_DOUBLE_EQ(object.truth_path_m, 9.5);
     EXPECT_NEAR(object.ate_m.value(), 0.0, 1e-9);
@@ -65,7 +65,7 @@ TEST(ObjectTrajectories, AConstantOffsetMovesTheUnalignedErrorOnly) {
 TEST(ObjectTrajectories, KnownRelativeErrors) {
   // 2 % too far and 0.01 rad a metre too much of a turn: sub-paths of 1 m are two frames of 0.5 m.
   Objects tracks;
-  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+  for (std::size_t frame = 0; frame < kLifeFrames; ++frame) {
     const double way_m = 0.5 * static_cast<double>(frame);
     tracks.push_back(at(frame, 0, 1.02 * way_m, 0.0, 0.01 * way_m));
   }
@@ -95,11 +95,11 @@ TEST(ObjectTrajectories, LostObjectsAndStrayTracksAreCounted) {
   const ObjectEvaluation evaluation = evaluate_objects(driving_cars(2), tracks);
   EXPECT_FALSE(evaluation.objects[1].track_id);
   EXPECT_FALSE(evaluation.objects[1].ate_m);
-  EXPECT_EQ(evaluation.objects[1].missed_frames, kFrames);
+  EXPECT_EQ(evaluation.objects[1].missed_frames, kLifeFrames);
   EXPECT_THAT(evaluation.tracks_without_object, testing::ElementsAre(99));
   const ObjectSummary summary = summarise(evaluation.objects);
   EXPECT_EQ(summary.lost, 1U);
-  EXPECT_EQ(summary.missed_frames, kFrames);
+  EXPECT_EQ(summary.missed_frames, kLifeFrames);
   EXPECT_NEAR(summary.ate_m.value(), 0.0, 1e-9);  // of the one that has it
 }
 
@@ -151,7 +151,7 @@ TEST(ObjectTrajectories, AReusedIdBelongsToOneObjectOnly) {
 TEST(ObjectTrajectories, ATrackThatDriftsAwayShowsItInItsError) {
   // Beyond the gate from frame 10 on: measured over all frames, counted as missed.
   Objects tracks;
-  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+  for (std::size_t frame = 0; frame < kLifeFrames; ++frame) {
     tracks.push_back(at(frame, 0, 0.5 * static_cast<double>(frame), frame < 10 ? 0.0 : 5.0));
   }
   const ObjectErrors error = evaluate_objects(driving_cars(1), tracks).objects.front();
@@ -171,7 +171,7 @@ TEST(ObjectTrajectories, AnotherTrackNearbyDoesNotStealAFrame) {
   }
   const ObjectErrors error = evaluate_objects(driving_cars(1), tracks).objects.front();
   EXPECT_EQ(error.switches, 0U);
-  EXPECT_EQ(error.tracked_frames, kFrames);
+  EXPECT_EQ(error.tracked_frames, kLifeFrames);
 }
 
 TEST(ObjectTrajectories, FramesWithFewReturnsAreNotDemanded) {

@@ -56,6 +56,12 @@ SensorConfig small_lidar() {
   return sensor;
 }
 
+PipelineConfig street_config() {
+  PipelineConfig config;
+  config.sensor = small_lidar();
+  return config;
+}
+
 SE3 street_motion() {
   SE3::Tangent xi = SE3::Tangent::Zero();
   xi(0) = 0.6;

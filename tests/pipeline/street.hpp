@@ -6,6 +6,7 @@
 #include "mlo/core/box.hpp"
 #include "mlo/core/sensor.hpp"
 #include "mlo/core/types.hpp"
+#include "mlo/pipeline/config.hpp"
 
 namespace mlo::test {
 
@@ -20,6 +21,9 @@ std::vector<Block> street_blocks();
 
 /// A small lidar: 32 rings of 360 points, 10 Hz, clockwise from behind.
 SensorConfig small_lidar();
+
+/// The defaults with this lidar.
+PipelineConfig street_config();
 
 /// Lidar pose at a time in sweeps: 1.7 m above the street's ground, driving with constant motion.
 SE3 street_pose(double sweeps);

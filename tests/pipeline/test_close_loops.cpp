@@ -57,7 +57,7 @@ std::vector<Eigen::Vector3f> town() {
 }
 
 /// Around the block, counter-clockwise from a corner; whole turns at the corners.
-SE3 true_pose(double way_m) {
+SE3 pose_on_square(double way_m) {
   const int side = static_cast<int>(way_m / kSide_m);
   const Eigen::Rotation2Dd turn(0.5 * std::numbers::pi * side);
   const Eigen::Vector2d corner =
@@ -83,13 +83,13 @@ void write_scene(const std::filesystem::path& file, double way_m) {
   SE3 T_map_lidar;
   for (double way = 0.0; way <= way_m; way += kStep_m) {
     if (way > 0.0) {
-      const SE3 step = true_pose(way - kStep_m).inverse() * true_pose(way);
+      const SE3 step = pose_on_square(way - kStep_m).inverse() * pose_on_square(way);
       T_map_lidar = T_map_lidar * SE3(step.rotation() * so3_exp({0.0, 0.0, -3e-4}), step.translation());
     }
     const auto frame = static_cast<std::uint64_t>(std::lround(way / kStep_m));
     SceneScan scan{
         .frame = frame, .stamp_s = 0.1 * way, .status = ScanStatus::localised, .T_map_lidar = T_map_lidar};
-    const SceneCloud cloud = seen_from(points, true_pose(way));
+    const SceneCloud cloud = seen_from(points, pose_on_square(way));
     writer.write(scan, &cloud);
   }
   writer.finish();
@@ -100,7 +100,7 @@ double error_at_end_m(const SceneFile& scene, const std::vector<SE3>& correction
   SE3 T_map_lidar = scene.scan(last).T_map_lidar;
   if (!corrections.empty()) T_map_lidar = corrections[last] * T_map_lidar;
   const double way_m = kStep_m * static_cast<double>(last);
-  return (T_map_lidar.translation() - true_pose(way_m).translation()).norm();
+  return (T_map_lidar.translation() - pose_on_square(way_m).translation()).norm();
 }
 
 TEST(CloseLoops, AWayAroundABlockMeetsItsBeginning) {

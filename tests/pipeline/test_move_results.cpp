@@ -17,16 +17,16 @@
 namespace mlo {
 namespace {
 
-constexpr std::size_t kScans = 4;
+constexpr std::size_t kMovedScans = 4;
 
 class MoveResults : public testing::Test {
  protected:
   MoveResults() {
     const std::filesystem::path& folder = folder_.path();
-    test::write_small_scene(folder / "scene.mlo", kScans);
+    test::write_small_scene(folder / "scene.mlo", kMovedScans);
     std::ofstream table(folder / "objects.csv");
     table << object_table_header() << '\n';
-    for (std::size_t i = 0; i < kScans; ++i) {
+    for (std::size_t i = 0; i < kMovedScans; ++i) {
       const SceneScan scan = test::small_scan(i);
       TrackedObject object;
       object.id = 3;
@@ -39,7 +39,7 @@ class MoveResults : public testing::Test {
   }
 
   void move_by(const SE3& correction) const {
-    const std::vector<SE3> corrections(kScans, correction);
+    const std::vector<SE3> corrections(kMovedScans, correction);
     move_results(folder_.path(), corrections, map_, SE3(), {});
   }
 
@@ -55,9 +55,9 @@ TEST_F(MoveResults, SceneAndFilesTellTheSame) {
   const PoseList stamped = read_trajectory(folder_.path() / "trajectory_tum.txt");
   const PoseList car = read_trajectory(folder_.path() / "object_trajectories" / "00003.txt");
   const std::vector<ObjectPose> rows = read_objects_csv(folder_.path() / "objects.csv");
-  ASSERT_EQ(scene.num_scans(), kScans);
-  ASSERT_EQ(rows.size(), kScans);
-  for (std::size_t i = 0; i < kScans; ++i) {
+  ASSERT_EQ(scene.num_scans(), kMovedScans);
+  ASSERT_EQ(rows.size(), kMovedScans);
+  for (std::size_t i = 0; i < kMovedScans; ++i) {
     const SceneScan before = test::small_scan(i);
     const SE3 robot_pose = correction * before.T_map_lidar;
     const SE3 car_pose = correction * before.objects[0].T_map_object;

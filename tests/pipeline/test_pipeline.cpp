@@ -10,12 +10,6 @@
 namespace mlo {
 namespace {
 
-PipelineConfig street_config() {
-  PipelineConfig config;
-  config.sensor = test::small_lidar();
-  return config;
-}
-
 /// The pose that the pipeline should give for a scan taken at `sweeps`, the first one having been at `first`.
 SE3 expected_pose(double sweeps, double first = 0.0) {
   return test::street_pose(first).inverse() * test::street_pose(sweeps);
@@ -41,7 +35,7 @@ bool in_car(const MapPoint& point) {
 }
 
 std::size_t car_points_in_map(bool with_detections) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   for (std::size_t i = 0; i < 6; ++i) {
     const auto sweeps = static_cast<double>(i);
     std::vector<Detection> detections;
@@ -55,7 +49,7 @@ std::size_t car_points_in_map(bool with_detections) {
 }
 
 TEST(Pipeline, FollowsTheMotionOfCompensatedScans) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   for (std::size_t i = 0; i < 12; ++i) {
     const auto sweeps = static_cast<double>(i);
     const FrameResult result = pipeline.process(test::street_scan(i, sweeps, true), {});
@@ -68,7 +62,7 @@ TEST(Pipeline, FollowsTheMotionOfCompensatedScans) {
 }
 
 FrameResult last_of_ten_distorted_scans() {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   FrameResult result;
   for (std::size_t i = 0; i < 10; ++i) {
     result = pipeline.process(test::street_scan(i, static_cast<double>(i), false), {});
@@ -87,7 +81,7 @@ TEST(Pipeline, WhatDetectionsEncloseIsNotInTheStaticMap) {
 }
 
 TEST(Pipeline, AnEmptyScanIsPredictedAndTheNextOneFound) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   for (std::size_t i = 0; i < 5; ++i) {
     pipeline.process(test::street_scan(i, static_cast<double>(i), true), {});
   }
@@ -105,7 +99,7 @@ TEST(Pipeline, AnEmptyScanIsPredictedAndTheNextOneFound) {
 }
 
 TEST(Pipeline, AnEmptyFirstScanDoesNotKeepLaterOnesFromTheMap) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   pipeline.process(empty_scan(0), {});
   for (std::size_t i = 1; i < 4; ++i)
     pipeline.process(test::street_scan(i, static_cast<double>(i), true), {});
@@ -117,7 +111,7 @@ TEST(Pipeline, AnEmptyFirstScanDoesNotKeepLaterOnesFromTheMap) {
 }
 
 TEST(Pipeline, ARobotThatWasCarriedAwayStartsANewMap) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   for (std::size_t i = 0; i < 4; ++i) {
     pipeline.process(test::street_scan(i, static_cast<double>(i), true), {});
   }
@@ -132,7 +126,7 @@ TEST(Pipeline, ARobotThatWasCarriedAwayStartsANewMap) {
 }
 
 TEST(Pipeline, AGapInTheStampsIsBridgedByTheMotion) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   FrameResult result;
   for (const std::size_t i : {0U, 1U, 2U, 3U, 4U, 8U, 9U}) {
     result = pipeline.process(test::street_scan(i, static_cast<double>(i), false), {});
@@ -143,7 +137,7 @@ TEST(Pipeline, AGapInTheStampsIsBridgedByTheMotion) {
 }
 
 TEST(Pipeline, OneScanAloneIsTheOrigin) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   EXPECT_EQ(pipeline.predict_poses(1.0).T_map_lidar.matrix(), SE3().matrix());
   const FrameResult result = pipeline.process(test::street_scan(0, 0.0, false), {});
   EXPECT_TRUE(result.first);
@@ -155,7 +149,7 @@ TEST(Pipeline, OneScanAloneIsTheOrigin) {
 }
 
 TEST(Pipeline, WithoutOdometryTheMapAloneIsFollowed) {
-  PipelineConfig config = street_config();
+  PipelineConfig config = test::street_config();
   config.odometry.enabled = false;
   Pipeline pipeline(config);
   FrameResult result;
@@ -167,7 +161,7 @@ TEST(Pipeline, WithoutOdometryTheMapAloneIsFollowed) {
 }
 
 TEST(Pipeline, MapsPerClassFollowTheMotionToo) {
-  PipelineConfig config = street_config();
+  PipelineConfig config = test::street_config();
   config.mapping.local_map.separate_classes = true;
   config.mapping.refinement.shape_model = ShapeModel::loam;
   Pipeline pipeline(config);

@@ -11,7 +11,7 @@
 namespace mlo {
 namespace {
 
-constexpr std::size_t kScans = 20;
+constexpr std::size_t kRealScans = 20;
 
 /// Mean error of the motion from scan to scan over the first scans [m]; no scan may be lost.
 double mean_step_error_m(const std::filesystem::path& folder, const std::filesystem::path& truth_file,
@@ -24,7 +24,7 @@ double mean_step_error_m(const std::filesystem::path& folder, const std::filesys
   Pipeline pipeline(config);
   double sum_m = 0.0;
   SE3 previous;
-  for (std::size_t i = 0; i < kScans; ++i) {
+  for (std::size_t i = 0; i < kRealScans; ++i) {
     const ScanReading reading = dataset.scans->read(i);
     if (!reading.scan) {
       ADD_FAILURE() << reading.problem;
@@ -38,7 +38,7 @@ double mean_step_error_m(const std::filesystem::path& folder, const std::filesys
     }
     previous = result.T_map_lidar;
   }
-  return sum_m / static_cast<double>(kScans - 1);
+  return sum_m / static_cast<double>(kRealScans - 1);
 }
 
 TEST(RealScans, CompensatedOdometryScansAreFollowed) {
@@ -62,7 +62,7 @@ std::vector<Eigen::Vector3d> positions(const Dataset& dataset) {
   config.sensor = dataset.sensor;
   Pipeline pipeline(config);
   std::vector<Eigen::Vector3d> path;
-  for (std::size_t i = 0; i < kScans; ++i)
+  for (std::size_t i = 0; i < kRealScans; ++i)
     path.push_back(pipeline.process(*dataset.scans->read(i).scan, {}).T_map_lidar.translation());
   return path;
 }

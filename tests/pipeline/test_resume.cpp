@@ -21,11 +21,10 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::size_t kScans = 12;
+constexpr std::size_t kResumedScans = 12;
 
-PipelineConfig street_config() {
-  PipelineConfig config;
-  config.sensor = test::small_lidar();
+PipelineConfig small_memory_config() {
+  PipelineConfig config = test::street_config();
   config.mapping.static_map.memory_radius_m = 50.0;
   return config;
 }
@@ -64,14 +63,14 @@ std::string map_of(const Pipeline& pipeline) {
 // Right at the beginning too, when the motion of the first scan is not known yet.
 TEST(PipelineState, APipelineThatReadsItGoesOnAsTheOtherWould) {
   for (const std::size_t before : {0U, 1U, 2U, 6U}) {
-    Pipeline pipeline(street_config());
+    Pipeline pipeline(small_memory_config());
     for (std::size_t i = 0; i < before; ++i) process(pipeline, i);
     const std::string state = bytes_of(pipeline);
-    Pipeline other(street_config());
+    Pipeline other(small_memory_config());
     ArchiveReader reader(state, "state");
     reader(other);
     EXPECT_TRUE(reader.at_end());
-    for (std::size_t i = before; i < kScans; ++i) {
+    for (std::size_t i = before; i < kResumedScans; ++i) {
       EXPECT_EQ(text_of(process(other, i)), text_of(process(pipeline, i))) << before << " " << i;
     }
     EXPECT_TRUE(map_of(other) == map_of(pipeline)) << before;
@@ -79,10 +78,10 @@ TEST(PipelineState, APipelineThatReadsItGoesOnAsTheOtherWould) {
 }
 
 TEST(PipelineState, DamagedBytesAreAnInputError) {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(small_memory_config());
   for (std::size_t i = 0; i < 3; ++i) process(pipeline, i);
   const std::string state = bytes_of(pipeline);
-  Pipeline other(street_config());
+  Pipeline other(small_memory_config());
   ArchiveReader reader(std::string_view(state).substr(0, state.size() - 1), "state");
   EXPECT_THROW(reader(other), InputError);
 }
@@ -93,7 +92,7 @@ struct Killed {};
 class Resume : public testing::Test {
  protected:
   Resume() {
-    for (std::size_t i = 0; i < kScans; ++i) {
+    for (std::size_t i = 0; i < kResumedScans; ++i) {
       if (i == 4) continue;  // a scan that is missing
       folder_.write(fmt::format("scans/{:06}.bin", i),
                     test::to_bin(test::street_scan(i, static_cast<double>(i), false).points));
@@ -108,14 +107,15 @@ class Resume : public testing::Test {
   RunOptions options(const char* name, bool resume = false) const {
     return {.out = out(name), .checkpoint_scans = 5, .state_scans = 3, .resume = resume};
   }
-  RunSummary run_whole(const RunOptions& options, const PipelineConfig& config = street_config()) const {
+  RunSummary run_whole(const RunOptions& options,
+                       const PipelineConfig& config = small_memory_config()) const {
     return run(dataset(), detections_, config, options, {}, {});
   }
   void run_and_kill(const char* name, std::size_t after, bool resume = false) const {
     const auto kill = [&](std::size_t done, std::size_t) {
       if (done == after) throw Killed{};
     };
-    EXPECT_THROW(run(dataset(), detections_, street_config(), options(name, resume), kill, {}), Killed);
+    EXPECT_THROW(run(dataset(), detections_, small_memory_config(), options(name, resume), kill, {}), Killed);
   }
   void expect_same_results(const char* a, const char* b) const {
     EXPECT_THAT(test::result_files(out(a)),
@@ -154,14 +154,14 @@ TEST_F(Resume, AnInterruptedRunGoesOnWhereItWas) {
   run_whole(options("whole"));
   std::size_t done = 0;
   const auto count = [&](std::size_t n, std::size_t) { done = n; };
-  EXPECT_TRUE(run(dataset(), detections_, street_config(), options("stopped"), count, [&] {
+  EXPECT_TRUE(run(dataset(), detections_, small_memory_config(), options("stopped"), count, [&] {
                 return done == 5;
               }).interrupted);
   std::size_t first = 0;
   const auto remember_first = [&](std::size_t n, std::size_t) {
     if (first == 0) first = n;
   };
-  run(dataset(), detections_, street_config(), options("stopped", true), remember_first, {});
+  run(dataset(), detections_, small_memory_config(), options("stopped", true), remember_first, {});
   EXPECT_EQ(first, 6U);
   expect_same_results("whole", "stopped");
 }
@@ -174,7 +174,7 @@ TEST_F(Resume, WithoutAStateItBeginsAnew) {
 
 TEST_F(Resume, AnotherConfigurationIsAnInputErrorThatNamesTheDifference) {
   run_and_kill("killed", 6);
-  PipelineConfig other = street_config();
+  PipelineConfig other = small_memory_config();
   other.mapping.refinement.gate_m = 0.7;
   try {
     run_whole(options("killed", true), other);

@@ -28,7 +28,7 @@ constexpr std::size_t kEmpty = 2;
 constexpr std::size_t kTruncated = 4;
 constexpr std::size_t kNaN = 5;
 constexpr std::size_t kMissing = 7;
-constexpr std::size_t kScans = 10;
+constexpr std::size_t kRunScans = 10;
 
 std::string file_name(std::size_t frame) {
   return "scans/00000" + std::to_string(frame) + ".bin";
@@ -50,7 +50,7 @@ void write_good_scans(const test::TempFolder& folder, std::size_t count) {
 
 /// Ten scans of which one is empty, one cut off, one NaN throughout and one absent.
 void write_bad_sequence(const test::TempFolder& folder) {
-  write_good_scans(folder, kScans);
+  write_good_scans(folder, kRunScans);
   folder.write(file_name(kEmpty), "");
   folder.write(file_name(kTruncated), scan_bytes(kTruncated).substr(0, 5003));
   folder.write(file_name(kNaN), nan_bytes());
@@ -117,8 +117,8 @@ std::unique_ptr<test::TempFolder> BadSequence::folder_;
 RunSummary BadSequence::summary_;
 
 TEST_F(BadSequence, IsCountedAndNamed) {
-  EXPECT_EQ(summary_.scans, kScans);
-  EXPECT_EQ(summary_.processed, kScans - 4);
+  EXPECT_EQ(summary_.scans, kRunScans);
+  EXPECT_EQ(summary_.processed, kRunScans - 4);
   EXPECT_EQ(summary_.skipped, 4U);
   EXPECT_EQ(summary_.invalid_points, 100U);
   EXPECT_EQ(summary_.predicted, 0U);
@@ -133,11 +133,11 @@ TEST_F(BadSequence, IsCountedAndNamed) {
 
 TEST_F(BadSequence, HasAPoseForEveryFrame) {
   for (const char* name : {"trajectory.txt", "odometry.txt"}) {
-    EXPECT_EQ(read_trajectory(out() / name).T_world_body.size(), kScans) << name;
+    EXPECT_EQ(read_trajectory(out() / name).T_world_body.size(), kRunScans) << name;
   }
-  EXPECT_EQ(read_trajectory(out() / "trajectory_tum.txt").stamps_s.size(), kScans - 4);
+  EXPECT_EQ(read_trajectory(out() / "trajectory_tum.txt").stamps_s.size(), kRunScans - 4);
   const PoseList poses = read_trajectory(out() / "trajectory.txt");
-  for (std::size_t i = 0; i < kScans; ++i) {
+  for (std::size_t i = 0; i < kRunScans; ++i) {
     const SE3 truth = test::street_pose(0.0).inverse() * test::street_pose(static_cast<double>(i));
     // The first motion is unknown until the second scan, all others are found or predicted from it.
     EXPECT_LT((truth.inverse() * poses.T_world_body[i]).translation().norm(), 0.1) << i;
@@ -146,7 +146,7 @@ TEST_F(BadSequence, HasAPoseForEveryFrame) {
 
 TEST_F(BadSequence, TableHasARowOfEqualLengthForEveryFrame) {
   const std::vector<std::string> lines = lines_of(out() / "per_scan.csv");
-  ASSERT_EQ(lines.size(), 1 + kScans);
+  ASSERT_EQ(lines.size(), 1 + kRunScans);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     EXPECT_EQ(num_columns(lines[i]), num_columns(lines[0])) << lines[i];
     if (i > 0) {
@@ -155,7 +155,7 @@ TEST_F(BadSequence, TableHasARowOfEqualLengthForEveryFrame) {
   }
   EXPECT_THAT(lines[1 + kEmpty], AllOf(HasSubstr("skipped"), HasSubstr("no valid point")));
   EXPECT_THAT(lines[1], HasSubstr(",first,"));
-  EXPECT_THAT(lines[kScans], HasSubstr(",localised,"));
+  EXPECT_THAT(lines[kRunScans], HasSubstr(",localised,"));
 }
 
 TEST_F(BadSequence, ReportIsJsonWithTheSameNumbers) {
@@ -179,9 +179,9 @@ TEST_F(BadSequence, ConfigurationReadsBackTheSame) {
 TEST_F(BadSequence, SceneHasEveryFrameAndTheMap) {
   const SceneFile scene(out() / "scene.mlo");
   EXPECT_TRUE(scene.complete());
-  ASSERT_EQ(scene.num_scans(), kScans);
+  ASSERT_EQ(scene.num_scans(), kRunScans);
   const PoseList poses = read_trajectory(out() / "trajectory.txt");
-  for (std::size_t i = 0; i < kScans; ++i) {
+  for (std::size_t i = 0; i < kRunScans; ++i) {
     const SceneScan scan = scene.scan(i);
     EXPECT_EQ(scan.frame, i);
     EXPECT_NEAR(scan.stamp_s, 0.1 * static_cast<double>(i), 1e-6);

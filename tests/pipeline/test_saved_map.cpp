@@ -16,20 +16,14 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-PipelineConfig street_config() {
-  PipelineConfig config;
-  config.sensor = test::small_lidar();
-  return config;
-}
-
 std::vector<MapPoint> street_map() {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   for (std::size_t i = 0; i < 20; ++i)
     pipeline.process(test::street_scan(i, static_cast<double>(i), false), {});
   return pipeline.static_map().points();
 }
 
-SE3 true_pose(double sweeps) {
+SE3 pose_on_street(double sweeps) {
   return test::street_pose(0.0).inverse() * test::street_pose(sweeps);
 }
 
@@ -42,7 +36,7 @@ std::size_t scans_to_find(Pipeline& pipeline) {
     EXPECT_FALSE(result.first);
     if (!result.localised()) ++to_find;
     if (i < 8) continue;  // by then the motion is known
-    const SE3 error = true_pose(static_cast<double>(i)).inverse() * result.T_map_lidar;
+    const SE3 error = pose_on_street(static_cast<double>(i)).inverse() * result.T_map_lidar;
     EXPECT_LT(error.translation().norm(), 0.1) << i;
     EXPECT_LT(error.rotation_angle_rad(), 0.5 * kDegree) << i;
   }
@@ -53,7 +47,7 @@ TEST(SavedMap, ThePlaceIsFoundFromAStartNearby) {
   const std::vector<MapPoint> map = street_map();
   for (const auto& [x_m, y_m, yaw_deg] : {std::array{0.0, 0.0, 0.0}, {3.0, -2.0, 10.0}, {-4.0, 1.5, -14.0}}) {
     const SE3 error(so3_exp({0.0, 0.0, yaw_deg * kDegree}), {x_m, y_m, 0.0});
-    Pipeline pipeline(street_config(), map, true_pose(4.0) * error);
+    Pipeline pipeline(test::street_config(), map, pose_on_street(4.0) * error);
     EXPECT_LT(scans_to_find(pipeline), 3U) << x_m;
     EXPECT_EQ(pipeline.static_map().size(), 0U);  // the map stays as it was
   }
@@ -62,7 +56,7 @@ TEST(SavedMap, ThePlaceIsFoundFromAStartNearby) {
 TEST(SavedMap, ElsewhereNothingIsFound) {
   std::vector<MapPoint> map = street_map();
   for (MapPoint& point : map) point.p_map.x() += 500.0F;
-  Pipeline pipeline(street_config(), map, SE3());
+  Pipeline pipeline(test::street_config(), map, SE3());
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_FALSE(pipeline.process(test::street_scan(i, static_cast<double>(i), false), {}).localised());
   }
@@ -70,12 +64,12 @@ TEST(SavedMap, ElsewhereNothingIsFound) {
 
 TEST(SavedMap, APipelineWithAMapGoesOnFromItsState) {
   const std::vector<MapPoint> map = street_map();
-  Pipeline pipeline(street_config(), map, true_pose(4.0));
+  Pipeline pipeline(test::street_config(), map, pose_on_street(4.0));
   for (std::size_t i = 4; i < 7; ++i)
     pipeline.process(test::street_scan(i, static_cast<double>(i), false), {});
   ArchiveWriter state;
   state(pipeline);
-  Pipeline other(street_config(), map, true_pose(4.0));
+  Pipeline other(test::street_config(), map, pose_on_street(4.0));
   ArchiveReader(state.bytes(), "state")(other);
   for (std::size_t i = 7; i < 10; ++i) {
     const Scan scan = test::street_scan(i, static_cast<double>(i), false);

@@ -14,19 +14,13 @@
 namespace mlo {
 namespace {
 
-constexpr std::size_t kScans = 6;
-
-PipelineConfig street_config() {
-  PipelineConfig config;
-  config.sensor = test::small_lidar();
-  return config;
-}
+constexpr std::size_t kSceneScans = 6;
 
 /// What the pipeline makes of distorted scans of a street with a parked car that is detected.
 std::vector<FrameResult> street_results() {
-  Pipeline pipeline(street_config());
+  Pipeline pipeline(test::street_config());
   std::vector<FrameResult> results;
-  for (std::size_t i = 0; i < kScans; ++i) {
+  for (std::size_t i = 0; i < kSceneScans; ++i) {
     const auto sweeps = static_cast<double>(i);
     const std::vector<Detection> detections{test::parked_car(sweeps)};
     results.push_back(pipeline.process(test::street_scan(i, sweeps, false), detections));
@@ -102,16 +96,16 @@ TEST(SceneOutput, ScansAndSkippedScansAreInTheFile) {
   {
     SceneOutput output(path, SceneMeta(), {});
     for (FrameResult& result : street_results()) output.write(std::move(result));
-    output.write_skipped(kScans, 0.6, "no file", {});
+    output.write_skipped(kSceneScans, 0.6, "no file", {});
     output.finish();
   }
   const SceneFile scene(path);
-  ASSERT_EQ(scene.num_scans(), kScans + 1);
+  ASSERT_EQ(scene.num_scans(), kSceneScans + 1);
   EXPECT_EQ(scene.scan(0).status, ScanStatus::first);
   EXPECT_GT(scene.cloud(0).points.size(), 500U);
-  EXPECT_EQ(scene.scan(kScans).status, ScanStatus::skipped);
-  EXPECT_EQ(scene.scan(kScans).problem, "no file");
-  EXPECT_TRUE(scene.cloud(kScans).points.empty());
+  EXPECT_EQ(scene.scan(kSceneScans).status, ScanStatus::skipped);
+  EXPECT_EQ(scene.scan(kSceneScans).problem, "no file");
+  EXPECT_TRUE(scene.cloud(kSceneScans).points.empty());
 }
 
 TEST(SceneOutput, WithoutCloudsTheFileHasNone) {

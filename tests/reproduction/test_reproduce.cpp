@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const PaperTable& table_of(const PaperTables& tables, const std::string& name) {
+const PaperTable& reproduced_table(const PaperTables& tables, const std::string& name) {
   for (const PaperTable& table : tables.tables) {
     if (table.name == name) return table;
   }
@@ -39,7 +39,8 @@ TEST(Reproduce, WithoutDataEveryRowIsNamedAsMissing) {
 
 TEST(Reproduce, TextHoldsThePapersValuesBesideOurs) {
   const PaperTables paper = paper_tables();
-  ReproducedTable table{.paper = table_of(paper, "Table II"), .titles = {"here"}, .rows = {}, .missing = {}};
+  ReproducedTable table{
+      .paper = reproduced_table(paper, "Table II"), .titles = {"here"}, .rows = {}, .missing = {}};
   table.rows.push_back(
       {.paper = table.paper.rows[2], .has_data = true, .here = {{0.5, std::nullopt, 0.25}}, .note = {}});
   const std::string text = to_text(table);
@@ -53,7 +54,7 @@ TEST(Reproduce, RunsARealSequenceOnceAndTakesItFromDiskAfterwards) {
   if (!data) GTEST_SKIP() << test::kNoRealData;
   const test::TempFolder folder;
   const PaperTables paper = paper_tables();
-  PaperTable table = table_of(paper, "Table I");
+  PaperTable table = reproduced_table(paper, "Table I");
   std::erase_if(table.rows, [](const PaperRow& row) { return row.name != "04" && row.name != "00"; });
   const ReproduceOptions options{.out = folder.path(), .last_frame = 5};
   std::size_t scans = 0;
@@ -77,7 +78,7 @@ TEST(Reproduce, StoppedRunsAreDoneAgain) {
   if (!data) GTEST_SKIP() << test::kNoRealData;
   const test::TempFolder folder;
   const PaperTables paper = paper_tables();
-  PaperTable table = table_of(paper, "Table I");
+  PaperTable table = reproduced_table(paper, "Table I");
   std::erase_if(table.rows, [](const PaperRow& row) { return row.name != "04"; });
   const ReproduceOptions options{.out = folder.path(), .last_frame = 5};
   std::size_t scans = 0;
@@ -93,7 +94,7 @@ TEST(Reproduce, StoppedRunsAreDoneAgain) {
 }
 
 PaperTable object_table(const std::vector<std::string>& rows) {
-  PaperTable table = table_of(paper_tables(), "Table IV");
+  PaperTable table = reproduced_table(paper_tables(), "Table IV");
   const PaperRow shape = table.rows.front();
   table.rows.clear();
   for (const std::string& name : rows) table.rows.push_back({.name = name, .values = shape.values});
@@ -144,7 +145,7 @@ TEST(Reproduce, ScoresTheTenSequences) {
   if (!data) GTEST_SKIP() << test::kNoRealData;
   const PaperTables paper = paper_tables();
   const ReproducedTable result =
-      reproduce_table(table_of(paper, "Table III"), find_kitti(*data), {}, silent());
+      reproduce_table(reproduced_table(paper, "Table III"), find_kitti(*data), {}, silent());
   EXPECT_TRUE(result.missing.empty());
   ASSERT_EQ(result.rows.size(), 1U);
   EXPECT_GT(result.rows[0].here[0][0].value(), 77.55);  // the paper's MOTA
