@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "mlo/core/azimuth.hpp"
 #include "mlo/io/sweep_structure.hpp"
 #include "mlo/simulator/lidar_model.hpp"
 #include "simulator/small_scene.hpp"

@@ -10,20 +10,12 @@
 
 #include <fmt/format.h>
 
+#include "mlo/core/azimuth.hpp"
+
 namespace mlo {
 namespace {
 
 constexpr double kRadToDeg = 180.0 / std::numbers::pi;
-
-// atan(sqrt(s)) / sqrt(s) / (2 pi) on [0, 1]: Chebyshev interpolation, error below 2e-9 turns.
-float atan_over_ratio(float s) {
-  float value = 4.402676e-4F;
-  for (const float c : {-2.5037061e-3F, 6.7064111e-3F, -1.18679531e-2F, 1.68996617e-2F, -2.25964970e-2F,
-                        3.18180526e-2F, -5.30511756e-2F, 1.5915494e-1F}) {
-    value = value * s + c;
-  }
-  return value;
-}
 
 // Azimuth [turns] and slope (tangent of the elevation) of each point.
 struct Angles {
@@ -321,18 +313,6 @@ RingRecovery assign_rings(std::span<Point> points, std::vector<Line> lines, cons
 }
 
 }  // namespace
-
-float azimuth_turns(float x, float y) {
-  const float ax = std::abs(x);
-  const float ay = std::abs(y);
-  const float longer = std::max(ax, ay);
-  const float ratio = longer > 0.0F ? std::min(ax, ay) / longer : 0.0F;
-  float turns = ratio * atan_over_ratio(ratio * ratio);
-  turns = ay > ax ? 0.25F - turns : turns;
-  turns = x < 0.0F ? 0.5F - turns : turns;
-  turns = y < 0.0F ? 1.0F - turns : turns;
-  return turns < 1.0F ? turns : 0.0F;
-}
 
 RingRecovery recover_rings(std::span<Point> points, const SensorConfig& sensor) {
   constexpr std::size_t kFewestPoints = 16;

@@ -19,10 +19,6 @@ struct RingRecovery {
   std::vector<double> elevation_deg;  ///< mean elevation of each ring found, highest first
 };
 
-/// Counter-clockwise azimuth of (x, y) in turns, in [0, 1); 0 is along x. Accurate to 1e-7 turns; 0 at the
-/// origin.
-float azimuth_turns(float x, float y);
-
 /// Sets the ring of each point of a file that lists its scan lines one after the other: lines end where the
 /// azimuth comes round to where the first one began (any cut, both directions, highest or lowest line first),
 /// and the vertical angle must agree: it moves a line's end that the azimuth misplaces, joins lines split by

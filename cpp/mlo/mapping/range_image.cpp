@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "mlo/core/azimuth.hpp"
 
 namespace mlo {
 namespace {
@@ -63,8 +64,7 @@ void RangeImage::set_rows(std::span<const Point> points) {
 }
 
 int RangeImage::column(const Eigen::Vector3f& p_lidar) {
-  const float share = 0.5F + 0.5F * std::numbers::inv_pi_v<float> * std::atan2(p_lidar.y(), p_lidar.x());
-  return std::min(kColumns - 1, static_cast<int>(share * kColumns));
+  return std::min(kColumns - 1, static_cast<int>(azimuth_turns(p_lidar.x(), p_lidar.y()) * kColumns));
 }
 
 int RangeImage::row(const Eigen::Vector3f& p_lidar) const {

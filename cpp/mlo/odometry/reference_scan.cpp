@@ -6,6 +6,7 @@
 
 #include <nanoflann.hpp>
 
+#include "mlo/core/azimuth.hpp"
 #include "mlo/core/kd_tree_points.hpp"
 #include "mlo/core/parallel.hpp"
 #include "mlo/odometry/thinning.hpp"
@@ -88,7 +89,7 @@ std::vector<Placed> place(const std::vector<FeaturePoint>& candidates, const Swe
   for (const FeaturePoint& candidate : thinned(candidates, max_points)) {
     const Eigen::Vector3f p =
         motion.undistort(candidate.p_lidar.cast<double>(), candidate.sweep_fraction).cast<float>();
-    placed.push_back({p, std::atan2(p.y(), p.x()), candidate.ring});
+    placed.push_back({p, azimuth_rad(p.x(), p.y()), candidate.ring});
   }
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
     return a.ring < b.ring || (a.ring == b.ring && a.azimuth < b.azimuth);

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "mlo/core/azimuth.hpp"
 #include "mlo/core/features.hpp"
 #include "mlo/core/sweep_motion.hpp"
 
@@ -18,7 +19,7 @@ namespace mlo {
 /// A place from which scan lines are searched, with what every search of it needs.
 struct RingQuery {
   explicit RingQuery(const Eigen::Vector3d& p_lidar)
-      : p(p_lidar.cast<float>()), azimuth_rad(std::atan2(p.y(), p.x())), range_m(p.head<2>().norm()) {}
+      : p(p_lidar.cast<float>()), azimuth_rad(mlo::azimuth_rad(p.x(), p.y())), range_m(p.head<2>().norm()) {}
   Eigen::Vector3f p;
   float azimuth_rad;
   float range_m;
@@ -95,12 +96,14 @@ std::optional<std::size_t> CandidateSet::nearest_on_ring(const RingQuery& query,
       std::lower_bound(first, first + static_cast<std::ptrdiff_t>(count), query.azimuth_rad) - first);
   constexpr float kHalfTurn = std::numbers::pi_v<float>;
 
+  const auto wrapped = [&](std::size_t offset) { return offset < count ? offset : offset - count; };
+
   std::optional<std::size_t> best;
   auto best_squared = static_cast<float>(max_distance_m * max_distance_m);
   // Walks away from the query's azimuth, once around at most, until no point farther on can be nearer: a
   // point at an azimuth difference d below a quarter turn is at least range * sin(d) away.
   const auto walk = [&](std::size_t offset, std::size_t step) {
-    for (std::size_t i = 0; i < count; ++i, offset = (offset + step) % count) {
+    for (std::size_t i = 0; i < count; ++i, offset = wrapped(offset + step)) {
       float d = std::abs(azimuths_[begin + offset] - query.azimuth_rad);
       if (d > kHalfTurn) d = 2.0F * kHalfTurn - d;
       const float sine = d < 0.5F * kHalfTurn ? d - d * d * d / 6.0F : 0.83F;
@@ -112,8 +115,8 @@ std::optional<std::size_t> CandidateSet::nearest_on_ring(const RingQuery& query,
       }
     }
   };
-  walk(start % count, 1);
-  walk((start + count - 1) % count, count - 1);
+  walk(wrapped(start), 1);
+  walk(wrapped(start + count - 1), count - 1);
   return best;
 }
 
