@@ -22,7 +22,9 @@ class SweepMotion {
   /// @param motion_per_sweep    of the lidar from the start of a sweep to its end
   /// @param reference_fraction  sweep fraction to which points are brought
   SweepMotion(const SE3& motion_per_sweep, double reference_fraction)
-      : xi_(motion_per_sweep.log()), reference_fraction_(reference_fraction) {}
+      : xi_(motion_per_sweep.log()),
+        is_still_((xi_.array() == 0.0).all()),
+        reference_fraction_(reference_fraction) {}
   static SweepMotion none() { return {SE3(), 0.5}; }
 
   /// The motion within a sweep that an increment between the reference times of two scans implies.
@@ -49,13 +51,14 @@ class SweepMotion {
   double reference_fraction() const { return reference_fraction_; }
 
   static void archive(auto& self, auto& bytes) {
-    bytes(self.xi_, self.reference_fraction_);
+    bytes(self.xi_, self.is_still_, self.reference_fraction_);
   }  // core/archive.hpp
 
  private:
   // By a share of the motion, as the third-order series of the exponential: exact to a millimetre at 50 m for
   // turns up to 6 degrees a sweep.
   Eigen::Vector3d moved(const Eigen::Vector3d& p_lidar, double share) const {
+    if (is_still_) return p_lidar;
     const Eigen::Vector3d w = share * xi_.tail<3>();
     const Eigen::Vector3d first = share * xi_.head<3>() + w.cross(p_lidar);
     const Eigen::Vector3d second = w.cross(first);
@@ -63,6 +66,7 @@ class SweepMotion {
   }
 
   SE3::Tangent xi_;
+  bool is_still_;
   double reference_fraction_;
 };
 

@@ -66,7 +66,8 @@ struct RefinementConfig {
           "true: distortion follows the pose while it is refined; false: it is removed once, with "
           "odometry's increment, as in the paper");
     visit("source_voxel_m", source_voxel_m, between(0.05, 10.0),
-          "the scan is thinned to one point per voxel: accuracy against time [m]");
+          "the scan is thinned to one point per voxel, the ground apart from the rest: accuracy against time "
+          "[m]");
     visit("neighbours", neighbours, between(5, 20), "map points that make a neighbourhood");
     visit("max_thickness_m", max_thickness_m, between(0.001, 10.0),
           "a neighbourhood thicker than this (standard deviation) is no plane [m]");
@@ -155,6 +156,7 @@ struct UnknownMoversConfig {
 /// The long-term map that is saved.
 struct StaticMapConfig {
   double voxel_m = 0.2;
+  int turns = 2;
   double hit_votes = 0.7;
   double max_votes = 8.0;
   double sure_votes = 3.0;
@@ -165,6 +167,10 @@ struct StaticMapConfig {
   void fields(Visitor& visit) {
     visit("voxel_m", voxel_m, between(0.01, 10.0),
           "one point per voxel is kept: detail against memory and file size [m]");
+    visit("turns", turns, between(1, 1000),
+          "of the points at places that the local map has already, one in so many is looked up in each scan, "
+          "in "
+          "turn: lower misses less, higher is faster");
     visit("hit_votes", hit_votes, between(0.0, 100.0),
           "a ray that ends at a point votes this much for it, one that went through one vote against it, and "
           "points with votes below zero are left out: higher keeps more of what is thin");

@@ -59,8 +59,8 @@ struct NearestPlaces {
     return count < max_count ? std::numeric_limits<float>::max()
                              : places[static_cast<std::size_t>(count - 1)].squared_distance;
   }
+  /// @param place  nearer than worst()
   void add(const Place& place) {
-    if (place.squared_distance >= worst()) return;
     auto i = static_cast<std::size_t>(count < max_count ? count++ : count - 1);
     for (; i > 0 && places[i - 1].squared_distance > place.squared_distance; --i) places[i] = places[i - 1];
     places[i] = place;
@@ -83,12 +83,26 @@ Eigen::Vector3f LocalMap::middle(const VoxelKey& key) const {
          static_cast<float>(config_.voxel_m);
 }
 
-void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
+inline std::array<float, NearestPoints::kMax> LocalMap::Voxel::squared_distances(
+    const Eigen::Vector3f& p) const {
+  std::array<float, NearestPoints::kMax> distances2;
+  for (std::size_t i = 0; i < distances2.size(); ++i) {
+    const float dx = static_cast<float>(x[i]) - p.x();
+    const float dy = static_cast<float>(y[i]) - p.y();
+    const float dz = static_cast<float>(z[i]) - p.z();
+    distances2[i] = dx * dx + dy * dy + dz * dz;
+  }
+  return distances2;
+}
+
+std::vector<std::uint8_t> LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
+  std::vector<std::uint8_t> added(points_map.size(), 0);
   const auto spacing2 =
       static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
   VoxelBlock* block = nullptr;
   VoxelKey last_block;
-  for (const Eigen::Vector3f& p : points_map) {
+  for (std::size_t i = 0; i < points_map.size(); ++i) {
+    const Eigen::Vector3f& p = points_map[i];
     const VoxelKey key = voxel_key(p, inverse_voxel_);
     // Neighbours in a scan are neighbours in the map.
     if (block == nullptr || VoxelBlock::key_of(key) != last_block) {
@@ -104,18 +118,9 @@ void LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
     const auto end = distances2.begin() + home.count;
     if (std::any_of(distances2.begin(), end, [&](float d2) { return d2 < spacing2; })) continue;
     home.push_back(steps);
+    added[i] = 1;
   }
-}
-
-std::array<float, NearestPoints::kMax> LocalMap::Voxel::squared_distances(const Eigen::Vector3f& p) const {
-  std::array<float, NearestPoints::kMax> distances2;
-  for (std::size_t i = 0; i < distances2.size(); ++i) {
-    const float dx = static_cast<float>(x[i]) - p.x();
-    const float dy = static_cast<float>(y[i]) - p.y();
-    const float dz = static_cast<float>(z[i]) - p.z();
-    distances2[i] = dx * dx + dy * dy + dz * dz;
-  }
-  return distances2;
+  return added;
 }
 
 void LocalMap::Voxel::push_back(const Eigen::Vector3f& p) {
@@ -236,8 +241,12 @@ NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float g
     if (n >= kAlwaysLoaded) voxels[n] = around.find(kNeighbours[n]);
     if (voxels[n] == nullptr) continue;
     const auto distances2 = voxels[n]->squared_distances(from_middle);
-    for (std::uint16_t i = 0; i < voxels[n]->count; ++i)
+    float worst = nearest.worst();
+    for (std::uint16_t i = 0; i < voxels[n]->count; ++i) {
+      if (distances2[i] >= worst) continue;
       nearest.add({distances2[i], static_cast<std::uint16_t>(n), i});
+      worst = nearest.worst();
+    }
   }
 
   NearestPoints result;

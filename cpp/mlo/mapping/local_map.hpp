@@ -28,7 +28,8 @@ class LocalMap {
   explicit LocalMap(const LocalMapConfig& config);
 
   /// Adds points (map frame [m]) in order; those too near to others of their voxel are left out.
-  void insert(std::span<const Eigen::Vector3f> points_map);
+  /// @return for each point 1 if it was added, 0 if not
+  std::vector<std::uint8_t> insert(std::span<const Eigen::Vector3f> points_map);
 
   /// Forgets the voxels farther than the configured radius from a place (map frame [m]). Does nothing until
   /// the place has moved by a twentieth of the radius since it last did, so that it may be called every scan.
@@ -58,7 +59,8 @@ class LocalMap {
     std::uint8_t count = 0;
 
     /// From a place to each point, both in steps from the voxel's middle; what is beyond count means nothing.
-    std::array<float, NearestPoints::kMax> squared_distances(const Eigen::Vector3f& p) const;
+    [[gnu::always_inline]] std::array<float, NearestPoints::kMax> squared_distances(
+        const Eigen::Vector3f& p) const;
     void push_back(const Eigen::Vector3f& p);
     Eigen::Vector3f point(int i) const;
     void prefetch() const {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "mlo/core/parallel.hpp"
 #include "mlo/core/robust_kernel.hpp"
+#include "mlo/core/voxel_grid.hpp"
 
 namespace mlo {
 namespace {
@@ -15,6 +17,8 @@ using Vector6d = NormalEquations::Vector6d;
 
 // Rotations count as the motion of a point at this distance when curvatures are compared.
 constexpr double kLeverArmM = 10.0;
+// Points are sorted by cubes of this side [m].
+constexpr float kSortingM = 2.0F;
 
 // One source point through the iterations.
 struct Source {
@@ -27,17 +31,35 @@ struct Source {
   ShapeMatch match;
 };
 
-std::vector<Source> collect(std::span<const RefinementTerm> terms) {
-  std::vector<Source> sources;
+// Grows with x, then y, then z.
+std::uint64_t sorting_key(const VoxelKey& key) {
+  const auto part = [](int value) { return (static_cast<std::uint64_t>(value) + (1U << 20U)) & 0x1FFFFFU; };
+  return part(key.x) << 42U | part(key.y) << 21U | part(key.z);
+}
+
+// The points of the terms in the order of the places where they are expected: neighbours in the map come one
+// after the other, so that its voxels are still in the cache.
+std::vector<Source> collect(std::span<const RefinementTerm> terms, const SE3& T_map_lidar) {
+  struct Expected {
+    std::uint64_t place;
+    const RefinementTerm* term;
+    const FeaturePoint* point;
+  };
+  std::vector<Expected> all;
   for (const RefinementTerm& term : terms) {
     for (const FeaturePoint& point : term.points) {
-      Source source;
-      source.p_measured = point.p_lidar.cast<double>();
-      source.p_lidar = source.p_measured;
-      source.sweep_fraction = point.sweep_fraction;
-      source.term = &term;
-      sources.push_back(source);
+      const Eigen::Vector3f p_map = (T_map_lidar * point.p_lidar.cast<double>()).cast<float>();
+      all.push_back({sorting_key(voxel_key(p_map, 1.0F / kSortingM)), &term, &point});
     }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Expected& a, const Expected& b) { return a.place < b.place; });
+  std::vector<Source> sources(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    sources[i].p_measured = all[i].point->p_lidar.cast<double>();
+    sources[i].p_lidar = sources[i].p_measured;
+    sources[i].sweep_fraction = all[i].point->sweep_fraction;
+    sources[i].term = all[i].term;
   }
   return sources;
 }
@@ -89,7 +111,9 @@ class Registration {
  public:
   Registration(std::span<const RefinementTerm> terms, const RefinementGuess& guess,
                const RefinementConfig& config)
-      : guess_(guess), config_(config), sources_(collect(terms)) {}
+      : guess_(guess),
+        config_(config),
+        sources_(collect(terms, guess.T_map_lidar_previous * guess.T_previous_current)) {}
 
   PoseEstimate run() {
     PoseEstimate result;

@@ -57,12 +57,13 @@ std::vector<Box3d> boxes_of_moving(std::span<const TrackedObject> objects) {
 template <class MeasuredPoint>
 std::vector<Eigen::Vector3f> placed(const std::vector<MeasuredPoint>& points, const SweepMotion& motion,
                                     const SE3& T_map_lidar) {
+  const Eigen::Matrix3d R_map_lidar = T_map_lidar.rotation().toRotationMatrix();
   std::vector<Eigen::Vector3f> points_map;
   points_map.reserve(points.size());
   for (const MeasuredPoint& point : points) {
     const Eigen::Vector3d p_lidar =
         motion.undistort(point.p_lidar.template cast<double>(), static_cast<double>(point.sweep_fraction));
-    points_map.emplace_back((T_map_lidar * p_lidar).template cast<float>());
+    points_map.emplace_back((R_map_lidar * p_lidar + T_map_lidar.translation()).template cast<float>());
   }
   return points_map;
 }
@@ -84,12 +85,11 @@ std::vector<FeaturePoint> to_features(std::span<const Point> points) {
   return features;
 }
 
-// All environment candidates of a scan, edges first, so that they are not thinned away.
-std::vector<FeaturePoint> all_candidates(const Percept& seen) {
-  std::vector<FeaturePoint> all = seen.edge.candidates;
-  all.insert(all.end(), seen.ground.candidates.begin(), seen.ground.candidates.end());
-  all.insert(all.end(), seen.surface.candidates.begin(), seen.surface.candidates.end());
-  return all;
+// Candidates above the ground, edges first, so that they are not thinned away.
+std::vector<FeaturePoint> candidates_above_ground(const Percept& seen) {
+  std::vector<FeaturePoint> above = seen.edge.candidates;
+  above.insert(above.end(), seen.surface.candidates.begin(), seen.surface.candidates.end());
+  return above;
 }
 
 }  // namespace
@@ -225,19 +225,15 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
   if (state_.empty && saved_map_.empty()) return refined;
   const RefinementConfig& config = config_.mapping.refinement;
   const bool separate = config_.mapping.local_map.separate_classes;
-  std::vector<FeaturePoint> ground;
+  const std::vector<FeaturePoint> ground = thin(seen.ground.candidates, config.source_voxel_m);
   std::vector<FeaturePoint> edges;
-  std::vector<FeaturePoint> rest;
-  if (separate) {
-    ground = thin(seen.ground.candidates, config.source_voxel_m);
-    edges = thin(seen.edge.candidates, config.source_voxel_m);
-    rest = thin(seen.surface.candidates, config.source_voxel_m);
-  } else {
-    rest = thin(all_candidates(seen), config.source_voxel_m);
-  }
-  std::vector<RefinementTerm> terms{{ground, &local_maps_.ground, ExpectedShape::plane},
-                                    {edges, &local_maps_.edge, ExpectedShape::line},
-                                    {rest, &local_maps_.surface, ExpectedShape::plane}};
+  if (separate) edges = thin(seen.edge.candidates, config.source_voxel_m);
+  const std::vector<FeaturePoint> rest =
+      thin(separate ? seen.surface.candidates : candidates_above_ground(seen), config.source_voxel_m);
+  std::vector<RefinementTerm> terms{
+      {ground, separate ? &local_maps_.ground : &local_maps_.surface, ExpectedShape::plane},
+      {edges, &local_maps_.edge, ExpectedShape::line},
+      {rest, &local_maps_.surface, ExpectedShape::plane}};
   const std::vector<ObjectAtRest> at_rest = find_objects_at_rest(seen, T_previous_current);
   for (const ObjectAtRest& object : at_rest) {
     terms.push_back({object.points, object.map, ExpectedShape::plane});
@@ -254,7 +250,8 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
     guess.motion_known = true;
     clear_maps();
     const SweepMotion motion = SweepMotion::from_increment(guess.T_previous_current, timing);
-    insert_in_local_maps(*state_.unplaced, motion, state_.T_map_lidar);
+    const PlacedCandidates in_map = place(*state_.unplaced, motion, state_.T_map_lidar);
+    insert_in_local_maps(*state_.unplaced, in_map, state_.T_map_lidar);
     static_map_.insert(*state_.unplaced, motion, state_.T_map_lidar, {}, {}, state_.frame);
     refined = refine(terms, guess, config);
   }
@@ -295,34 +292,54 @@ void Pipeline::clear_maps() {
   unknown_movers_ = UnknownMovers(config_.mapping.unknown_movers, config_.mapping.free_space);
 }
 
-void Pipeline::insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar) {
+Pipeline::PlacedCandidates Pipeline::place(const Percept& seen, const SweepMotion& motion,
+                                           const SE3& T_map_lidar) {
+  PlacedCandidates in_map;
+  parallel_invoke([&] { in_map.ground = placed(seen.ground.candidates, motion, T_map_lidar); },
+                  [&] {
+                    in_map.edge = placed(seen.edge.candidates, motion, T_map_lidar);
+                    in_map.surface = placed(seen.surface.candidates, motion, T_map_lidar);
+                  });
+  return in_map;
+}
+
+// Returns the candidates that the static map may not have yet: those at places that the local maps did not
+// have, and some of the others in turn.
+Percept Pipeline::insert_in_local_maps(const Percept& seen, const PlacedCandidates& in_map,
+                                       const SE3& T_map_lidar) {
   const bool separate = config_.mapping.local_map.separate_classes;
+  const auto turns = static_cast<std::size_t>(config_.mapping.static_map.turns);
   LocalMaps& maps = local_maps_;
-  const auto insert = [&](const FeatureSet& set, LocalMap& own_map) {
-    (separate ? own_map : maps.surface).insert(placed(set.candidates, motion, T_map_lidar));
+  const auto insert = [&](const std::vector<Eigen::Vector3f>& points_map, const FeatureSet& set,
+                          LocalMap& own_map) {
+    const std::vector<std::uint8_t> added = (separate ? own_map : maps.surface).insert(points_map);
+    FeatureSet unmapped;
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      if (added[i] != 0 || (i + state_.frame) % turns == 0) unmapped.candidates.push_back(set.candidates[i]);
+    }
+    return unmapped;
   };
-  insert(seen.edge, maps.edge);
-  insert(seen.ground, maps.ground);
-  insert(seen.surface, maps.surface);
+  Percept unmapped;
+  unmapped.edge = insert(in_map.edge, seen.edge, maps.edge);
+  unmapped.ground = insert(in_map.ground, seen.ground, maps.ground);
+  unmapped.surface = insert(in_map.surface, seen.surface, maps.surface);
   for (LocalMap* map : {&maps.ground, &maps.edge, &maps.surface}) {
     map->forget_beyond_radius(T_map_lidar.translation().cast<float>());
   }
+  return unmapped;
 }
 
-FoundMovers Pipeline::find_unknown_movers(const Scan& scan, const Percept& seen, const SweepMotion& motion,
-                                          const SE3& T_map_lidar) {
+FoundMovers Pipeline::find_unknown_movers(double stamp_s, const PlacedCandidates& in_map) {
   if (config_.mapping.unknown_movers.every == 0) return {};
-  std::vector<Eigen::Vector3f> points_map = placed(seen.edge.candidates, motion, T_map_lidar);
-  const std::vector<Eigen::Vector3f> surface = placed(seen.surface.candidates, motion, T_map_lidar);
-  points_map.insert(points_map.end(), surface.begin(), surface.end());
-  return unknown_movers_.update(scan.stamp_s, points_map);
+  std::vector<Eigen::Vector3f> above_ground = in_map.edge;
+  above_ground.insert(above_ground.end(), in_map.surface.begin(), in_map.surface.end());
+  return unknown_movers_.update(stamp_s, above_ground);
 }
 
-std::vector<UnknownMover> Pipeline::update_static_map(const Scan& scan, const Percept& seen,
-                                                      const SweepMotion& motion, const SE3& T_map_lidar,
-                                                      std::span<const TrackedObject> objects) {
-  FoundMovers unknown = find_unknown_movers(scan, seen, motion, T_map_lidar);
-  static_map_.insert(seen, motion, T_map_lidar, boxes_of_moving(objects), unknown.columns, scan.frame);
+void Pipeline::update_static_map(const Scan& scan, const Percept& unmapped, const SweepMotion& motion,
+                                 const SE3& T_map_lidar, std::span<const TrackedObject> objects,
+                                 const ColumnSet& unknown_movers) {
+  static_map_.insert(unmapped, motion, T_map_lidar, boxes_of_moving(objects), unknown_movers, scan.frame);
   const auto is_turn = [&](int every) {
     return every > 0 && scan.frame % static_cast<std::size_t>(every) == 0;
   };
@@ -334,7 +351,6 @@ std::vector<UnknownMover> Pipeline::update_static_map(const Scan& scan, const Pe
     if (is_remembered) unknown_movers_.remember(std::move(view));
   }
   static_map_.spool_far(T_map_lidar.translation().cast<float>());
-  return std::move(unknown.movers);
 }
 
 // The motion since the previous scan that removes distortion from what is put into maps. The first pose that
@@ -381,20 +397,25 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& 
     clear_local_maps();
     next.scans_lost = 0;
   }
+  const bool grows_static_map = makes_map && result.localised();
+  const PlacedCandidates in_map =
+      grows_static_map || new_local_maps ? place(seen, motion, T_map_lidar) : PlacedCandidates{};
+  Percept unmapped;
+  FoundMovers unknown;
   parallel_invoke(
       [&] {
-        if (!config_.odometry.enabled) return;
-        const auto max_candidates = static_cast<std::size_t>(config_.odometry.max_candidates);
-        next.reference = make_reference_scan(seen, motion, max_candidates);
+        if (config_.odometry.enabled)
+          next.reference =
+              make_reference_scan(seen, motion, static_cast<std::size_t>(config_.odometry.max_candidates));
+        if (grows_static_map) unknown = find_unknown_movers(scan.stamp_s, in_map);
       },
       [&] {
-        const bool fits = makes_map && result.localised();
-        if (fits || new_local_maps) insert_in_local_maps(seen, motion, T_map_lidar);
-      },
-      [&] {
-        if (!makes_map || !result.localised()) return;
-        result.unknown_movers = update_static_map(scan, seen, motion, T_map_lidar, result.objects);
+        if (grows_static_map || new_local_maps) unmapped = insert_in_local_maps(seen, in_map, T_map_lidar);
       });
+  if (grows_static_map) {
+    update_static_map(scan, unmapped, motion, T_map_lidar, result.objects, unknown.columns);
+    result.unknown_movers = std::move(unknown.movers);
+  }
 
   result.motion = motion;
   result.T_reference_stamp = motion.T_reference_at(scan.stamp_fraction);

@@ -81,6 +81,11 @@ class Pipeline {
     static void archive(auto& self, auto& bytes) { bytes(self.ground, self.edge, self.surface); }
   };
 
+  /// The candidates of a scan in the map frame [m], in their order.
+  struct PlacedCandidates {
+    std::vector<Eigen::Vector3f> ground, edge, surface;
+  };
+
   /// @param given  boxes, or nothing: they are looked for
   FrameResult process_scan(const Scan& scan, std::optional<std::span<const Detection>> given);
   FoundObjects find_objects(const Scan& prepared, const GroundSegmentation& ground) const;
@@ -105,13 +110,13 @@ class Pipeline {
   void clear_maps();
   void clear_local_maps();
   bool local_maps_are_empty() const;
-  void insert_in_local_maps(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
+  static PlacedCandidates place(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
+  Percept insert_in_local_maps(const Percept& seen, const PlacedCandidates& in_map, const SE3& T_map_lidar);
 
-  FoundMovers find_unknown_movers(const Scan& scan, const Percept& seen, const SweepMotion& motion,
-                                  const SE3& T_map_lidar);
-  std::vector<UnknownMover> update_static_map(const Scan& scan, const Percept& seen,
-                                              const SweepMotion& motion, const SE3& T_map_lidar,
-                                              std::span<const TrackedObject> objects);
+  FoundMovers find_unknown_movers(double stamp_s, const PlacedCandidates& in_map);
+  void update_static_map(const Scan& scan, const Percept& unmapped, const SweepMotion& motion,
+                         const SE3& T_map_lidar, std::span<const TrackedObject> objects,
+                         const ColumnSet& unknown_movers);
   /// @param next  with stamp, poses and motion of this scan; the rest is filled in
   void commit(const Scan& scan, const Percept& seen, const SweepMotion& motion, State next,
               FrameResult& result);
