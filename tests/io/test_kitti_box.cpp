@@ -90,9 +90,22 @@ TEST(KittiBox, ProjectionEndsAtTheImage) {
   const auto beside = project_box({{2.0, 1.0, 1.0}, 2.0, 2.0, 6.0, kPi / 2.0}, camera_matrix(), size_px);
   ASSERT_TRUE(beside.has_value());
   EXPECT_EQ(beside->right_px, 1199.0);
-  EXPECT_EQ(beside->top_px, 0.0);
+  EXPECT_NEAR(beside->top_px, 0.0, 1e-9);
   EXPECT_EQ(beside->bottom_px, 399.0);
   EXPECT_NEAR(beside->left_px, 600.0 + 700.0 * 1.0 / 4.0, 1e-9);
+}
+
+TEST(KittiBox, PartsOutsideTheImageDoNotStretchWhatIsInside) {
+  const Eigen::Vector2d size_px(1200.0, 400.0);
+  // A long box along the road that begins beside the camera: its near end is large, and left of the image.
+  const KittiBox box{{-5.0, 1.0, 8.0}, 1.0, 1.0, 12.0, kPi / 2.0};
+  const auto image = project_box(box, camera_matrix(), size_px);
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->left_px, 0.0);
+  EXPECT_NEAR(image->right_px, 600.0 - 700.0 * 4.5 / 14.0, 1e-9);
+  // The right side leaves the image at x / z = -600 / 700, so at 4.5 m to the left at a depth of 5.25 m; its
+  // bottom is 1 m below the camera there.
+  EXPECT_NEAR(image->bottom_px, 200.0 + 700.0 * 1.0 / 5.25, 1e-9);
 }
 
 TEST(KittiBox, WhatIsNotInTheImageHasNoProjection) {

@@ -124,16 +124,16 @@ TrackingScores score(const std::string& object_class, bool with_poses) {
 TEST(TrackDetections, RealCarsWithPoses) {
   if (!test::real_data()) GTEST_SKIP() << test::kNoRealData;
   const TrackingScores scores = score("car", true);
-  EXPECT_GT(scores.hota.hota(), 0.785);
-  EXPECT_GT(scores.clear.mota(), 0.864);
-  EXPECT_LT(scores.clear.id_switches, 45U);
+  EXPECT_GT(scores.hota.hota(), 0.787);
+  EXPECT_GT(scores.clear.mota(), 0.866);
+  EXPECT_LT(scores.clear.id_switches, 40U);
 }
 
 TEST(TrackDetections, RealCarsWithoutPoses) {
   if (!test::real_data()) GTEST_SKIP() << test::kNoRealData;
   const TrackingScores scores = score("car", false);
-  EXPECT_GT(scores.hota.hota(), 0.770);
-  EXPECT_GT(scores.clear.mota(), 0.853);
+  EXPECT_GT(scores.hota.hota(), 0.775);
+  EXPECT_GT(scores.clear.mota(), 0.855);
 }
 
 }  // namespace

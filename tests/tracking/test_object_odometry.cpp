@@ -151,6 +151,32 @@ TEST(ObjectOdometry, BoxesThatAreNoBoxesLeaveTheirPointsOut) {
   EXPECT_TRUE(Tracker({}).process(seen, SE3(), kDt_s, kCompensated).empty());
 }
 
+TEST(ObjectOdometry, ABoxOfAbsurdSizeAroundAllPointsStaysFinite) {
+  for (const double size_m : {1e-6, 1e6}) {
+    Tracker tracker({});
+    for (int scan = 0; scan < 10; ++scan) {
+      std::vector<ObjectPoints> seen{sight(scan)};
+      seen[0].detection.box.size_lwh_m.setConstant(size_m);
+      for (const TrackedObject& object : tracker.process(seen, lidar_pose(scan), kDt_s, kCompensated)) {
+        EXPECT_TRUE(object.T_map_object.is_finite()) << size_m;
+        EXPECT_TRUE(object.velocity_map_mps.allFinite()) << size_m;
+      }
+    }
+  }
+}
+
+TEST(ObjectOdometry, TwoIdenticalBoxesWithTheSamePointsAreOneReportedObject) {
+  Tracker tracker({});
+  std::vector<TrackedObject> objects;
+  for (int scan = 0; scan < 20; ++scan) {
+    const std::vector<ObjectPoints> seen{sight(scan), sight(scan)};
+    objects = tracker.process(seen, lidar_pose(scan), kDt_s, kCompensated);
+  }
+  std::erase_if(objects, [](const TrackedObject& object) { return !object.reported; });
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_LT((objects[0].T_map_object.translation() - car_pose(19).translation()).norm(), 0.15);
+}
+
 TEST(ObjectOdometry, TheSameForAnyNumberOfThreads) {
   const auto run = [](int threads) {
     Tracker tracker({});

@@ -82,6 +82,29 @@ TEST(Tracker, AnOccludedCarComesBackAsItself) {
   EXPECT_EQ(find(objects, 1)->detection, std::optional<std::size_t>(0));
 }
 
+TEST(Tracker, ADrivingCarOutOfSightIsShownUntilItMayBeAnywhere) {
+  // Beyond where a miss tells anything: it is believed to exist, but its speed may change.
+  Tracker driving({});
+  Tracker parked({});
+  int driving_shown = 0;
+  int parked_shown = 0;
+  for (int i = 0; i < 30; ++i) {
+    const bool seen = i < 15;
+    const std::vector<Detection> here{car(65.0 + 1.5 * i, 0.0)};
+    const std::vector<Detection> there{car(65.0, 0.0)};
+    const auto moving = driving.process(seen ? here : std::vector<Detection>{}, SE3(), kDt_s);
+    const auto standing = parked.process(seen ? there : std::vector<Detection>{}, SE3(), kDt_s);
+    if (seen) continue;
+    driving_shown += moving.at(0).reported ? 1 : 0;
+    parked_shown += standing.at(0).reported ? 1 : 0;
+    if (!moving.at(0).reported) continue;
+    EXPECT_NEAR(moving.at(0).T_map_object.translation().x(), 65.0 + 1.5 * i, 2.0);
+  }
+  EXPECT_GE(driving_shown, 2);
+  EXPECT_LE(driving_shown, 8);
+  EXPECT_GT(parked_shown, driving_shown);
+}
+
 TEST(Tracker, BirthNeedsEvidenceAndDeathFollowsMisses) {
   TrackingConfig config;
   config.lifecycle.max_coasting = 2;  // the paper's

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace mlo {
 namespace {
@@ -36,26 +37,42 @@ std::array<Eigen::Vector3d, 8> corners_camera(const KittiBox& box) {
   return corners;
 }
 
-/// Grows with points of an image.
-struct Extent {
-  Eigen::Array2d min = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array2d max = -min;
-  void add(const Eigen::Array2d& p) {
-    min = min.min(p);
-    max = max.max(p);
-  }
+/// What is in the image lies on the positive side: n . q + d >= 0 of homogeneous image coordinates q = [u z;
+/// v z; z].
+struct HalfSpace {
+  Eigen::Vector3d n;
+  double d = 0.0;
+  double side(const Eigen::Vector3d& q) const { return n.dot(q) + d; }
 };
 
-/// Adds the ends of the part of an edge that lies in front of the camera.
-void add_edge(Extent& extent, Eigen::Vector3d a, Eigen::Vector3d b, const Eigen::Matrix<double, 3, 4>& P2) {
-  if (a.z() > b.z()) std::swap(a, b);
-  if (b.z() < kNearPlane_m) return;
-  if (a.z() < kNearPlane_m) a += (kNearPlane_m - a.z()) / (b.z() - a.z()) * (b - a);
-  for (const Eigen::Vector3d& p_camera : {a, b}) {
-    const Eigen::Vector3d p = P2 * p_camera.homogeneous();
-    extent.add(p.head<2>().array() / p.z());
-  }
+/// @param last_px  of each row and column
+std::array<HalfSpace, 5> view_pyramid(const Eigen::Array2d& last_px) {
+  return {{{{0.0, 0.0, 1.0}, -kNearPlane_m},
+           {{1.0, 0.0, 0.0}},
+           {{0.0, 1.0, 0.0}},
+           {{-1.0, 0.0, last_px.x()}},
+           {{0.0, -1.0, last_px.y()}}}};
 }
+
+using Polygon = std::vector<Eigen::Vector3d>;
+
+/// The part of a convex polygon on the positive side (Sutherland and Hodgman, CACM 1974).
+Polygon cut(const Polygon& polygon, const HalfSpace& half_space) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector3d& a = polygon[i];
+    const Eigen::Vector3d& b = polygon[(i + 1) % polygon.size()];
+    const double side_a = half_space.side(a);
+    const double side_b = half_space.side(b);
+    if (side_a >= 0.0) kept.push_back(a);
+    if ((side_a >= 0.0) != (side_b >= 0.0)) kept.push_back(a + side_a / (side_a - side_b) * (b - a));
+  }
+  return kept;
+}
+
+/// Indices of corners_camera, each face once round.
+constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
+    {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
 
 }  // namespace
 
@@ -93,17 +110,23 @@ double observation_angle_rad(const KittiBox& box) {
 std::optional<Box2d> project_box(const KittiBox& box, const Eigen::Matrix<double, 3, 4>& P2,
                                  const Eigen::Vector2d& image_size_px) {
   const std::array<Eigen::Vector3d, 8> corners = corners_camera(box);
-  Extent extent;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (const std::size_t bit : {1U, 2U, 4U}) {
-      if ((i & bit) == 0) add_edge(extent, corners[i], corners[i | bit], P2);
+  const Eigen::Array2d last_px = image_size_px.array() - 1.0;
+  Eigen::Array2d min_px = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Array2d max_px = -min_px;
+  for (const std::array<std::size_t, 4>& face : kFaces) {
+    Polygon polygon;
+    for (const std::size_t i : face) polygon.push_back(P2 * corners[i].homogeneous());
+    for (const HalfSpace& half_space : view_pyramid(last_px)) polygon = cut(polygon, half_space);
+    for (const Eigen::Vector3d& q : polygon) {
+      min_px = min_px.min(q.head<2>().array() / q.z());
+      max_px = max_px.max(q.head<2>().array() / q.z());
     }
   }
-  const Eigen::Array2d last = image_size_px.array() - 1.0;
-  if (!((extent.min < last).all() && (extent.max > 0.0).all())) return std::nullopt;
-  const Eigen::Array2d min = extent.min.max(0.0);
-  const Eigen::Array2d max = extent.max.min(last);
-  return Box2d{min.x(), min.y(), max.x(), max.y()};
+  if (!((min_px < last_px).all() && (max_px > 0.0).all())) return std::nullopt;
+  // Cut points lie on the border but for rounding.
+  min_px = min_px.max(0.0);
+  max_px = max_px.min(last_px);
+  return Box2d{min_px.x(), min_px.y(), max_px.x(), max_px.y()};
 }
 
 }  // namespace mlo

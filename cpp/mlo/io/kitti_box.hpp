@@ -29,8 +29,8 @@ KittiBox box_in_camera(const Box3d& box, const SE3& T_camera0_lidar);
 /// KITTI's observation angle: rotation_y less the direction to the box, in (-pi, pi].
 double observation_angle_rad(const KittiBox& box);
 
-/// Smallest rectangle around the projection of the box, clipped to the image. Edges that reach behind the
-/// camera are cut in front of it. Nothing when the box is not in the image at all.
+/// Smallest rectangle around that part of the box's projection that lies in the image. What reaches behind
+/// the camera is cut in front of it. Nothing when the box is not in the image at all.
 /// @param P2  projects rectified camera 0 coordinates [m] to image 2 [px]
 /// @param image_size_px  width and height
 std::optional<Box2d> project_box(const KittiBox& box, const Eigen::Matrix<double, 3, 4>& P2,

@@ -12,6 +12,14 @@
 namespace mlo {
 namespace {
 
+/// A predicted object that may be farther off is not shown: where it is to be seen next is not known any
+/// more.
+constexpr double kMaxPredictedSd_m = 2.0;
+
+double position_sd_m(const ObjectFilter& filter) {
+  return std::sqrt(filter.planar_covariance().topLeftCorner<2, 2>().trace());
+}
+
 bool is_usable(const Detection& detection) {
   const Box3d& box = detection.box;
   return box.center_lidar_m.allFinite() && box.size_lwh_m.allFinite() &&
@@ -199,14 +207,13 @@ void Tracker::judge(Track& track) const {
   const PlacedBox placed = track.filter.box();
   const Box3d box = in_lidar(placed, T_map_lidar_);
   const double margin_rad = field_of_view_margin_rad(box, field_of_view_rad(config_.lifecycle));
-  const double sd_m = std::sqrt(track.filter.planar_covariance().topLeftCorner<2, 2>().trace());
   const bool is_car = track.object_class == ObjectClass::car;
   track.belief = report_belief({.existence = track.existence,
                                 .best_logit = track.best_logit,
                                 .logit = track.logit,
                                 .detectability = detectability(box.center_lidar_m.norm(), config_.lifecycle),
                                 .margin_deg = margin_rad * 180.0 / std::numbers::pi,
-                                .sd_m = track.detection ? 0.0 : sd_m,
+                                .sd_m = track.detection ? 0.0 : position_sd_m(track.filter),
                                 .wider_m = is_car ? usual_width_.excess_m(placed.size_lwh_m.y()) : 0.0},
                                weights_for(track.object_class, config_.report));
   track.state =
@@ -271,10 +278,11 @@ void Tracker::end_tracks() {
 
 TrackedObject Tracker::describe(const Track& track) const {
   const PlacedBox placed = track.filter.box();
+  const bool is_placed = track.detection || position_sd_m(track.filter) <= kMaxPredictedSd_m;
   TrackedObject object{.id = track.id,
                        .object_class = track.object_class,
                        .state = track.state,
-                       .reported = track.state != TrackState::tentative && track.belief >= 0.0,
+                       .reported = track.state != TrackState::tentative && track.belief >= 0.0 && is_placed,
                        .box = in_lidar(placed, T_map_lidar_),
                        .T_map_object = placed.T_map_object(),
                        .velocity_map_mps = track.filter.velocity_mps(),
