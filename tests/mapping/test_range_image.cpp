@@ -68,6 +68,42 @@ TEST(RangeImage, SaysNothingWhereNoRayWent) {
   EXPECT_EQ(empty.sweep_fraction(direction(0.0, 0.0)), 0.5F);
 }
 
+/// The room with a gap from 10 degrees to the left to 10 degrees to the right, above an elevation.
+RangeImage room_open_above(double elevation_deg) {
+  std::vector<Point> room = round_room(20.0, 8.0);
+  const auto lowest = static_cast<float>(std::tan(elevation_deg * kDegree));
+  std::erase_if(room, [&](const Point& point) {
+    const Eigen::Vector3f& p = point.p_lidar;
+    const bool ahead = p.x() > 0.0F && std::abs(p.y()) < 0.17F * p.x();
+    return ahead && p.z() > lowest * p.head<2>().norm();
+  });
+  return RangeImage(room);
+}
+
+TEST(RangeImage, AboveTheHighestRaysIsTheSky) {
+  const RangeImage image = room_open_above(0.0);
+  EXPECT_EQ(image.look(7.0F * direction(0.0, 3.0), 0.3F), Sight::sky);
+  EXPECT_EQ(image.look(7.0F * direction(0.0, 9.0), 0.3F), Sight::sky);
+  EXPECT_NE(image.look(7.0F * direction(0.0, 0.1), 0.3F), Sight::sky) << "beside rays that came back";
+  EXPECT_EQ(image.look(7.0F * direction(9.3, 3.0), 0.3F), Sight::unknown) << "beside rays that came back";
+  EXPECT_EQ(image.look(7.0F * direction(0.0, -3.0), 0.3F), Sight::through);
+}
+
+TEST(RangeImage, WhatIsBelowRaysThatCameBackIsNotTheSky) {
+  std::vector<Point> room = round_room(20.0, 8.0);
+  std::erase_if(room, [](const Point& point) {
+    const float elevation = point.p_lidar.z() / point.p_lidar.head<2>().norm();
+    return point.p_lidar.x() > 0.0F && elevation > -0.1F && elevation < 0.1F;
+  });
+  EXPECT_EQ(RangeImage(room).look(7.0F * direction(0.0, 0.0), 0.3F), Sight::empty) << "a dark band";
+}
+
+TEST(RangeImage, WhereNoRayWentAtAllIsNotTheSky) {
+  std::vector<Point> room = round_room(20.0, 8.0);
+  std::erase_if(room, [](const Point& point) { return point.p_lidar.x() < 0.0F; });
+  EXPECT_EQ(RangeImage(room).look(7.0F * direction(180.0, 3.0), 0.3F), Sight::empty) << "cropped";
+}
+
 TEST(RangeImage, WhereNoRayAroundCameBackItIsEmpty) {
   std::vector<Point> room = round_room(20.0, 8.0);
   std::erase_if(room, [](const Point& point) {

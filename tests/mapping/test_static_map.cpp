@@ -111,6 +111,60 @@ TEST(StaticMap, WhatLaterScansSeeThroughIsLeftOut) {
   EXPECT_EQ(map.points().size(), 1U) << "no more than max_votes speak for it";
 }
 
+TEST(StaticMap, WhatStandsWhereTheSkyIsIsLeftOutButNotTheGround) {
+  // The wall ends at the height of the lidar; nothing comes back from above.
+  std::vector<Point> low_wall = wall_ahead(20.0F);
+  std::erase_if(low_wall, [](const Point& point) {
+    return std::abs(point.p_lidar.y()) < 3.0F && point.p_lidar.z() > 0.0F;
+  });
+  Percept seen;
+  seen.surface.candidates = {at(10.0F, 0.1F, 0.7F)};
+  seen.ground.candidates = {at(9.0F, 0.1F, 0.6F)};
+  StaticMap map({});
+  map.insert(seen, SweepMotion::none(), SE3());
+  const ScanView view(low_wall, SweepMotion::none(), SE3());
+  const ScanView hit(wall_ahead(10.0F), SweepMotion::none(), SE3());
+  for (const ScanView* each : {&view, &view, &hit, &view, &view}) map.observe(*each);
+  EXPECT_EQ(map.points().size(), 2U) << "now and then nothing comes back from what stands";
+  map.observe(view);
+  map.observe(view);
+  ASSERT_EQ(map.points().size(), 1U);
+  EXPECT_EQ(map.points()[0].label, MapLabel::ground);
+}
+
+TEST(StaticMap, TakesBackWhatOneScanBroughtWithinABox) {
+  Percept early;
+  early.surface.candidates = {at(10.0F, 0.1F, 0.1F), at(30.0F, 0.1F, 0.1F)};
+  Percept late;
+  late.surface.candidates = {at(10.0F, 0.5F, 0.1F)};
+  StaticMap map({.moving_margin_m = 0.5});
+  map.insert(early, SweepMotion::none(), SE3(), {}, {}, 4);
+  map.insert(late, SweepMotion::none(), SE3(), {}, {}, 5);
+  const SE3 T_map_object(Eigen::Quaterniond::Identity(), {11.0, 0.0, 0.0});
+  const Eigen::Vector3d size(2.0, 2.0, 2.0);
+  const auto x_of_points = [&] {
+    std::vector<std::pair<float, float>> found;
+    for (const MapPoint& point : map.points()) found.emplace_back(point.p_map.x(), point.p_map.y());
+    return found;
+  };
+  map.take_back(3, T_map_object, size);
+  EXPECT_EQ(map.points().size(), 3U) << "nothing is of that scan";
+  map.take_back(4, T_map_object, size);
+  EXPECT_THAT(x_of_points(), testing::UnorderedElementsAre(std::pair(30.0F, 0.1F), std::pair(10.0F, 0.5F)))
+      << "of that scan, in the box";
+  map.take_back(4, T_map_object, size);
+  for (int i = 0; i < 20; ++i) map.observe(ScanView(wall_ahead(10.0F), SweepMotion::none(), SE3()));
+  EXPECT_EQ(map.points().size(), 2U) << "no vote brings it back";
+
+  ArchiveWriter bytes;
+  StaticMap::archive(map, bytes);
+  ArchiveReader reader(bytes.bytes(), "archive");
+  StaticMap::archive(map, reader);
+  EXPECT_EQ(map.points().size(), 2U);
+  map.insert(early, SweepMotion::none(), SE3(), {}, {}, 6);
+  EXPECT_EQ(map.points().size(), 3U) << "a later scan fills its place anew";
+}
+
 TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
   Percept seen;
   for (int i = 0; i < 500; ++i) {

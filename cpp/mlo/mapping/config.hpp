@@ -161,6 +161,7 @@ struct StaticMapConfig {
   double max_votes = 8.0;
   double sure_votes = 3.0;
   double moving_margin_m = 0.5;
+  double trail_s = 0.6;
   double memory_radius_m = 200.0;
 
   template <class Visitor>
@@ -182,6 +183,9 @@ struct StaticMapConfig {
     visit("moving_margin_m", moving_margin_m, between(0.0, 5.0),
           "boxes of tracks that move count as this much larger on every side, so that nothing of them "
           "is added [m]");
+    visit("trail_s", trail_s, between(0.0, 10.0),
+          "and so they do where such a track is expected to have been this long before it was found to move, "
+          "and to be this long after it was lost [s]");
     visit("memory_radius_m", memory_radius_m, between(50.0, 1e6),
           "what is farther from the robot waits on disk: memory against reading it again on return [m]");
   }

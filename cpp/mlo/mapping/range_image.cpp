@@ -35,9 +35,13 @@ RangeImage::RangeImage(std::span<const Point> points) {
   pixels_.resize(static_cast<std::size_t>(rows_) * kColumns);
   std::vector<float> fraction_sums(kColumns, 0.0F);
   std::vector<int> counts(kColumns, 0);
+  top_rows_.assign(kColumns, -1);
   for (const Point& point : points) {
     const int c = column(point.p_lidar);
-    Pixel& pixel = pixels_[index(row(point.p_lidar), c, kColumns)];
+    const int r = row(point.p_lidar);
+    Pixel& pixel = pixels_[index(r, c, kColumns)];
+    int& top_row = top_rows_[static_cast<std::size_t>(c)];
+    top_row = std::max(top_row, r);
     const float range_m = point.p_lidar.norm();
     pixel.nearest_m = pixel.nearest_m > 0.0F ? std::min(pixel.nearest_m, range_m) : range_m;
     pixel.farthest_m = std::max(pixel.farthest_m, range_m);
@@ -89,12 +93,24 @@ bool RangeImage::is_empty_around(int row, int column) const {
   return true;
 }
 
+// From the row below upwards. A direction without any ray was not looked at: it was cropped, or hidden.
+bool RangeImage::is_sky(int row, int column) const {
+  for (int j = column - 1; j <= column + 1; ++j) {
+    const int top_row = top_rows_[static_cast<std::size_t>((j + kColumns) % kColumns)];
+    if (top_row < 0 || top_row >= row - 1) return false;
+  }
+  return true;
+}
+
 Sight RangeImage::look(const Eigen::Vector3f& p_lidar, float margin_m) const {
   const int r = row(p_lidar);
   if (r < 0 || r >= rows_) return Sight::unknown;
   const int c = column(p_lidar);
   const Pixel& middle = at(r, c);
-  if (!(middle.nearest_m > 0.0F)) return is_empty_around(r, c) ? Sight::empty : Sight::unknown;
+  if (!(middle.nearest_m > 0.0F)) {
+    if (is_sky(r, c)) return Sight::sky;
+    return is_empty_around(r, c) ? Sight::empty : Sight::unknown;
+  }
   const float range_m = p_lidar.norm();
   if (range_m > middle.nearest_m - margin_m && range_m < middle.farthest_m + margin_m) return Sight::hit;
   for (int j = c - 1; j <= c + 1; ++j) {

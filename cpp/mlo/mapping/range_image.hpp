@@ -14,7 +14,8 @@ enum class Sight {
   unknown,  ///< no ray came near, or it ended in front
   hit,      ///< a ray ended there
   through,  ///< the rays around went on beyond
-  empty     ///< none of the rays around came back: the sky, or what reflects nothing
+  empty,    ///< none of the rays around came back: far away, or what reflects nothing
+  sky       ///< nor did any above them: nothing is there
 };
 
 /// The ranges of one scan by direction, as they were measured: for questions of what was free.
@@ -40,7 +41,8 @@ class RangeImage {
   Sight look(const Eigen::Vector3f& p_lidar, float margin_m) const;
 
   static void archive(auto& self, auto& bytes) {  // core/archive.hpp
-    bytes(self.lowest_tangent_, self.inverse_row_height_, self.rows_, self.pixels_, self.sweep_fractions_);
+    bytes(self.lowest_tangent_, self.inverse_row_height_, self.rows_, self.pixels_, self.sweep_fractions_,
+          self.top_rows_);
   }
 
  private:
@@ -56,12 +58,14 @@ class RangeImage {
   int row(const Eigen::Vector3f& p_lidar) const;
   const Pixel& at(int row, int column) const;
   bool is_empty_around(int row, int column) const;
+  bool is_sky(int row, int column) const;
 
   float lowest_tangent_ = 0.0F;  // of the elevation
   float inverse_row_height_ = 0.0F;
   int rows_ = 0;
   std::vector<Pixel> pixels_;           // row by row
   std::vector<float> sweep_fractions_;  // of each column
+  std::vector<int> top_rows_;           // the highest with a ray in each column, -1 without
 };
 
 }  // namespace mlo

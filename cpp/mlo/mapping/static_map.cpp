@@ -14,6 +14,10 @@ constexpr float kTileM = 20.0F;
 // same thing that passed.
 constexpr float kBlockM = 1.0F;
 constexpr int kDoubtfulBlock = 3;
+// So many scans in a row have to see the sky at a place, no hit between them, until it counts as free.
+constexpr std::uint8_t kSkies = 3;
+// Votes of an entry that was taken back: for ever out of the map.
+constexpr float kTakenBack = -std::numeric_limits<float>::infinity();
 
 VoxelKey block_key(const Eigen::Vector3f& p_map) {
   return voxel_key(p_map, 1.0F / kBlockM);
@@ -89,6 +93,7 @@ void StaticMap::fetch(Tile& tile) const {
 
 void StaticMap::make_index(Tile& tile) const {
   for (std::uint32_t i = 0; i < tile.entries.size(); ++i) {
+    if (tile.entries[i].votes == kTakenBack) continue;
     const VoxelKey voxel = voxel_key(tile.entries[i].point.p_map, inverse_voxel_);
     tile.index[VoxelBlock::key_of(voxel)].at(voxel) = i;
   }
@@ -127,15 +132,53 @@ void StaticMap::observe(const ScanView& view) {
 }
 
 void StaticMap::observe(Tile& tile, const ScanView& view) const {
-  const auto hit_votes = static_cast<float>(config_.hit_votes);
-  const auto limit = static_cast<float>(config_.max_votes);
   for (Entry& entry : tile.entries) {
-    const Sight sight = view.look(entry.point.p_map, entry.point.label == MapLabel::ground, free_space_);
-    if (sight == Sight::hit) {
-      entry.votes = std::min(entry.votes + hit_votes, limit);
-    } else if (sight == Sight::through) {
-      entry.votes = std::max(entry.votes - 1.0F, -limit);
+    if (entry.votes == kTakenBack) continue;
+    vote(entry, view.look(entry.point.p_map, entry.point.label == MapLabel::ground, free_space_));
+  }
+}
+
+void StaticMap::vote(Entry& entry, Sight sight) const {
+  const auto limit = static_cast<float>(config_.max_votes);
+  if (sight == Sight::hit) {
+    entry.skies = 0;
+    entry.votes = std::min(entry.votes + static_cast<float>(config_.hit_votes), limit);
+    return;
+  }
+  // From the road, and now and then from anything, nothing comes back though it is there.
+  if (sight == Sight::sky && entry.point.label != MapLabel::ground && entry.skies < kSkies) ++entry.skies;
+  const bool is_free = sight == Sight::through || (sight == Sight::sky && entry.skies == kSkies);
+  if (is_free) entry.votes = std::max(entry.votes - 1.0F, -limit);
+}
+
+void StaticMap::take_back(std::size_t frame, const SE3& T_map_object, const Eigen::Vector3d& size_lwh_m) {
+  const SE3 T_object_map = T_map_object.inverse();
+  const Eigen::Array3d half_m = 0.5 * size_lwh_m.array() + config_.moving_margin_m;
+  const auto is_inside = [&](const Eigen::Vector3f& p_map) {
+    return ((T_object_map * p_map.cast<double>()).array().abs() <= half_m).all();
+  };
+  const Eigen::Vector3f center_map = T_map_object.translation().cast<float>();
+  const auto reach_m = static_cast<float>(half_m.head<2>().matrix().norm());
+  const VoxelKey low = tile_key(center_map - Eigen::Vector3f(reach_m, reach_m, 0.0F));
+  const VoxelKey high = tile_key(center_map + Eigen::Vector3f(reach_m, reach_m, 0.0F));
+  for (int x = low.x; x <= high.x; ++x) {
+    for (int y = low.y; y <= high.y; ++y) {
+      const auto found = tile_index_.find({x, y, 0});
+      if (found != tile_index_.end()) take_back(tiles_[found->second], frame, is_inside);
     }
+  }
+}
+
+template <class IsInside>
+void StaticMap::take_back(Tile& tile, std::size_t frame, const IsInside& is_inside) {
+  // The entries of a tile are in the order of the scans.
+  const auto is_earlier = [](const Entry& entry, std::size_t than) { return entry.frame < than; };
+  auto entry = std::lower_bound(tile.entries.begin(), tile.entries.end(), frame, is_earlier);
+  for (; entry != tile.entries.end() && entry->frame == frame; ++entry) {
+    if (entry->votes == kTakenBack || !is_inside(entry->point.p_map)) continue;
+    entry->votes = kTakenBack;
+    const VoxelKey voxel = voxel_key(entry->point.p_map, inverse_voxel_);
+    tile.index[VoxelBlock::key_of(voxel)].at(voxel) = VoxelBlock::kNone;
   }
 }
 

@@ -40,6 +40,12 @@ class StaticMap {
   /// Lets a scan vote on the points of the map: for those that it sees, against those that it sees through.
   void observe(const ScanView& view);
 
+  /// Takes back what one scan brought within an upright box and the margin around it; later scans may fill
+  /// its voxels anew. Parts that wait on disk stay as they are.
+  /// @param frame         of the scan
+  /// @param T_map_object  of the middle of the box, x ahead
+  void take_back(std::size_t frame, const SE3& T_map_object, const Eigen::Vector3d& size_lwh_m);
+
   /// Puts the parts that are far from a place (map frame [m]) on disk. They come back when they are needed.
   /// @throws InputError when the temporary files cannot be written
   void spool_far(const Eigen::Vector3f& center_map);
@@ -62,7 +68,8 @@ class StaticMap {
     MapPoint point;
     float votes = 0.0F;  // for being there
     std::uint32_t frame = 0;
-    static void archive(auto& self, auto& bytes) { bytes(self.point, self.votes, self.frame); }
+    std::uint8_t skies = 0;  // in a row, scans that saw the sky there
+    static void archive(auto& self, auto& bytes) { bytes(self.point, self.votes, self.frame, self.skies); }
   };
   /// A column of the map: what is near the robot is found by its tiles.
   struct Tile {
@@ -91,7 +98,10 @@ class StaticMap {
   void make_index(Tile& tile) const;
   std::vector<Entry> entries_of(const Tile& tile) const;
   void observe(Tile& tile, const ScanView& view) const;
+  template <class IsInside>
+  void take_back(Tile& tile, std::size_t frame, const IsInside& is_inside);
   std::vector<Entry> kept_entries() const;
+  void vote(Entry& entry, Sight sight) const;
   static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }
 
   StaticMapConfig config_;

@@ -100,6 +100,7 @@ Pipeline::Pipeline(const PipelineConfig& config)
                   LocalMap(config.mapping.local_map)},
       static_map_(config.mapping.static_map, config.mapping.free_space),
       unknown_movers_(config.mapping.unknown_movers, config.mapping.free_space),
+      mover_trails_(config.mapping.static_map.trail_s),
       trajectories_(config.mapping.dynamic_check, config.mapping.refinement),
       tracker_(config.tracking) {}
 
@@ -290,6 +291,7 @@ void Pipeline::clear_maps() {
   clear_local_maps();
   static_map_ = StaticMap(config_.mapping.static_map, config_.mapping.free_space);
   unknown_movers_ = UnknownMovers(config_.mapping.unknown_movers, config_.mapping.free_space);
+  mover_trails_ = MoverTrails(config_.mapping.static_map.trail_s);
 }
 
 Pipeline::PlacedCandidates Pipeline::place(const Percept& seen, const SweepMotion& motion,
@@ -336,10 +338,36 @@ FoundMovers Pipeline::find_unknown_movers(double stamp_s, const PlacedCandidates
   return unknown_movers_.update(stamp_s, above_ground);
 }
 
+// Takes back what movers left in the static map before they were known to move.
+// @return where those that were lost should be, lidar frame
+std::vector<Box3d> Pipeline::follow_trails(const Scan& scan, const SE3& T_map_lidar,
+                                           std::span<const TrackedObject> objects) {
+  std::vector<TrailedObject> trailed;
+  for (const TrackedObject& object : objects) {
+    trailed.push_back({.id = object.id,
+                       .T_map_object = object.T_map_object,
+                       .size_lwh_m = object.box.size_lwh_m,
+                       .velocity_map_mps = object.velocity_map_mps,
+                       .moves = object.reported && object.moving});
+  }
+  const Trails trails = mover_trails_.update(scan.frame, scan.stamp_s, trailed);
+  for (const TrailPlace& place : trails.before) {
+    static_map_.take_back(place.frame, place.T_map_object, place.size_lwh_m);
+  }
+  std::vector<Box3d> lost;
+  for (const TrailPlace& place : trails.now) {
+    lost.push_back(upright_box(T_map_lidar.inverse() * place.T_map_object, place.size_lwh_m));
+  }
+  return lost;
+}
+
 void Pipeline::update_static_map(const Scan& scan, const Percept& unmapped, const SweepMotion& motion,
                                  const SE3& T_map_lidar, std::span<const TrackedObject> objects,
                                  const ColumnSet& unknown_movers) {
-  static_map_.insert(unmapped, motion, T_map_lidar, boxes_of_moving(objects), unknown_movers, scan.frame);
+  std::vector<Box3d> moving = boxes_of_moving(objects);
+  const std::vector<Box3d> lost = follow_trails(scan, T_map_lidar, objects);
+  moving.insert(moving.end(), lost.begin(), lost.end());
+  static_map_.insert(unmapped, motion, T_map_lidar, moving, unknown_movers, scan.frame);
   const auto is_turn = [&](int every) {
     return every > 0 && scan.frame % static_cast<std::size_t>(every) == 0;
   };

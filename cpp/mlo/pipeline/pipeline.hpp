@@ -9,6 +9,7 @@
 #include "mlo/core/types.hpp"
 #include "mlo/detection/detect.hpp"
 #include "mlo/mapping/local_map.hpp"
+#include "mlo/mapping/mover_trails.hpp"
 #include "mlo/mapping/refinement.hpp"
 #include "mlo/mapping/saved_map.hpp"
 #include "mlo/mapping/static_map.hpp"
@@ -49,8 +50,8 @@ class Pipeline {
   /// Everything that later results depend on but the configuration (core/archive.hpp): a pipeline of the same
   /// configuration that reads it goes on as this one would.
   static void archive(auto& self, auto& bytes) {
-    bytes(self.state_, self.local_maps_, self.static_map_, self.unknown_movers_, self.saved_map_,
-          self.trajectories_, self.tracker_);
+    bytes(self.state_, self.local_maps_, self.static_map_, self.unknown_movers_, self.mover_trails_,
+          self.saved_map_, self.trajectories_, self.tracker_);
   }
 
  private:
@@ -117,6 +118,8 @@ class Pipeline {
   void update_static_map(const Scan& scan, const Percept& unmapped, const SweepMotion& motion,
                          const SE3& T_map_lidar, std::span<const TrackedObject> objects,
                          const ColumnSet& unknown_movers);
+  std::vector<Box3d> follow_trails(const Scan& scan, const SE3& T_map_lidar,
+                                   std::span<const TrackedObject> objects);
   /// @param next  with stamp, poses and motion of this scan; the rest is filled in
   void commit(const Scan& scan, const Percept& seen, const SweepMotion& motion, State next,
               FrameResult& result);
@@ -126,6 +129,7 @@ class Pipeline {
   LocalMaps local_maps_;
   StaticMap static_map_;
   UnknownMovers unknown_movers_;
+  MoverTrails mover_trails_;
   SavedMap saved_map_;  // empty: a map is made
   TrajectoryList trajectories_;
   Tracker tracker_;
