@@ -66,8 +66,8 @@ format:
 
 lint:
 	$(call install,build bench develop)
-	@cmake --preset release -DMLO_BUILD_BENCHMARKS=ON
-	@scripts/lint.sh $(BUILD) $(BASE)
+	@cmake --preset dev
+	@scripts/lint.sh build-dev $(BASE)
 
 clean:
 	rm -rf build build-*

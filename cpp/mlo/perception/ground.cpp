@@ -38,18 +38,25 @@ float cos_deg(double degrees) {
 struct Moments {
   Eigen::Vector3f origin;  ///< somewhere among the points, so that single precision suffices
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f sum_of_squares = Eigen::Matrix3f::Zero();
+  float xx = 0.0F, xy = 0.0F, xz = 0.0F, yy = 0.0F, yz = 0.0F, zz = 0.0F;  ///< sums of products
   std::size_t count = 0;
 
   void add(const Eigen::Vector3f& p) {
     const Eigen::Vector3f d = p - origin;
     sum += d;
-    sum_of_squares += d * d.transpose();
+    xx += d.x() * d.x();
+    xy += d.x() * d.y();
+    xz += d.x() * d.z();
+    yy += d.y() * d.y();
+    yz += d.y() * d.z();
+    zz += d.z() * d.z();
     ++count;
   }
   Eigen::Matrix3f covariance() const {
     const auto n = static_cast<float>(count);
-    return sum_of_squares / n - (sum / n) * (sum / n).transpose();
+    Eigen::Matrix3f products;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return products / n - (sum / n) * (sum / n).transpose();
   }
 };
 

@@ -226,11 +226,15 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
   if (state_.empty && saved_map_.empty()) return refined;
   const RefinementConfig& config = config_.mapping.refinement;
   const bool separate = config_.mapping.local_map.separate_classes;
-  const std::vector<FeaturePoint> ground = thin(seen.ground.candidates, config.source_voxel_m);
+  std::vector<FeaturePoint> ground;
   std::vector<FeaturePoint> edges;
-  if (separate) edges = thin(seen.edge.candidates, config.source_voxel_m);
-  const std::vector<FeaturePoint> rest =
-      thin(separate ? seen.surface.candidates : candidates_above_ground(seen), config.source_voxel_m);
+  std::vector<FeaturePoint> rest;
+  parallel_invoke([&] { ground = thin(seen.ground.candidates, config.source_voxel_m); },
+                  [&] {
+                    if (separate) edges = thin(seen.edge.candidates, config.source_voxel_m);
+                    rest = thin(separate ? seen.surface.candidates : candidates_above_ground(seen),
+                                config.source_voxel_m);
+                  });
   std::vector<RefinementTerm> terms{
       {ground, separate ? &local_maps_.ground : &local_maps_.surface, ExpectedShape::plane},
       {edges, &local_maps_.edge, ExpectedShape::line},
