@@ -6,9 +6,9 @@
 
 #include "mlo/core/box.hpp"
 #include "mlo/core/fields.hpp"
+#include "mlo/core/random.hpp"
 #include "mlo/simulator/camera.hpp"
 #include "mlo/simulator/ground_truth.hpp"
-#include "mlo/simulator/random.hpp"
 
 namespace mlo::simulator {
 

@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "mlo/core/random.hpp"
 #include "mlo/core/se3.hpp"
-#include "mlo/simulator/random.hpp"
 
 namespace mlo::simulator {
 

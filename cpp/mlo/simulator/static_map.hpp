@@ -5,10 +5,10 @@
 
 #include <tsl/robin_set.h>
 
+#include "mlo/core/random.hpp"
 #include "mlo/core/se3.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/simulator/lidar_model.hpp"
-#include "mlo/simulator/random.hpp"
 
 namespace mlo::simulator {
 

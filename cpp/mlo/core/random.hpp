@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace mlo::simulator {
+namespace mlo {
 
 /// Mixes two numbers into one that looks random (splitmix64's finaliser). A pure function: what is drawn for
 /// ray i does not depend on which thread draws it, or in which order.
@@ -30,4 +30,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace mlo::simulator
+}  // namespace mlo

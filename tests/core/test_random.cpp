@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "mlo/simulator/random.hpp"
+#include "mlo/core/random.hpp"
 
-namespace mlo::simulator {
+namespace mlo {
 namespace {
 
 constexpr int kDraws = 20000;
@@ -50,4 +50,4 @@ TEST(Random, IntegersCoverBothEndsEvenly) {
 }
 
 }  // namespace
-}  // namespace mlo::simulator
+}  // namespace mlo

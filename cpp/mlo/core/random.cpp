@@ -1,10 +1,10 @@
-#include "mlo/simulator/random.hpp"
+#include "mlo/core/random.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace mlo::simulator {
+namespace mlo {
 namespace {
 
 constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
@@ -42,4 +42,4 @@ double Random::normal() {
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
 }
 
-}  // namespace mlo::simulator
+}  // namespace mlo
