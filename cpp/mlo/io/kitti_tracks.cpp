@@ -19,6 +19,7 @@ namespace {
 // Numbers of a row, without the type that stands between the second and the third.
 constexpr std::size_t kLabelNumbers = 16;
 constexpr std::size_t kResultNumbers = 17;
+constexpr std::size_t kObjectWords = 15;
 
 // "car" to "Car", "dontcare" to "DontCare".
 std::string kitti_spelling(std::string type) {
@@ -75,6 +76,10 @@ ObjectRecord object_record(const std::string& line, const std::string& where) {
   return record;
 }
 
+int truncation_step(double share) {
+  return share <= 0.15 ? 0 : share <= 0.30 ? 1 : share <= 0.50 ? 2 : 3;
+}
+
 }  // namespace
 
 SE3 T_camera0_level() {
@@ -87,6 +92,23 @@ std::vector<ObjectRecord> read_kitti_tracks(const std::filesystem::path& file) {
   records.reserve(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     records.push_back(object_record(lines[i], fmt::format("{}:{}", file.string(), i + 1)));
+  }
+  return records;
+}
+
+std::vector<ObjectRecord> read_kitti_object_labels(const std::filesystem::path& file) {
+  const std::vector<std::string> lines = read_lines(file);
+  std::vector<ObjectRecord> records;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string where = fmt::format("{}:{}", file.string(), i + 1);
+    const std::vector<std::string_view> words = split_words(lines[i]);
+    if (words.size() != kObjectWords) {
+      throw InputError(fmt::format("{}: has {} values, a label of KITTI's object benchmark has {}", where,
+                                   words.size(), kObjectWords));
+    }
+    const long id = words[0] == "DontCare" ? -1 : static_cast<long>(i);
+    records.push_back(object_record(fmt::format("0 {} {}", id, lines[i]), where));
+    records.back().truncation = truncation_step(*parse_number(words[1]));
   }
   return records;
 }

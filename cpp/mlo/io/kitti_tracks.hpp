@@ -22,6 +22,12 @@ std::vector<ObjectRecord> read_kitti_tracks(const std::filesystem::path& file);
 /// @throws InputError if there are none, or as read_kitti_tracks
 std::map<std::string, std::vector<ObjectRecord>> read_kitti_sequences(const std::filesystem::path& path);
 
+/// Reads a label file of the KITTI object benchmark (label_2/NNNNNN.txt): rows as above without frame and id,
+/// and with truncation as a share, which becomes the steps that the benchmark tells apart: up to 15 %, 30 %,
+/// 50 % (0, 1, 2), and more (3). Ids count rows; frames are 0.
+/// @throws InputError naming file and line
+std::vector<ObjectRecord> read_kitti_object_labels(const std::filesystem::path& file);
+
 /// The record's 3D box as KITTI's files have it: the same numbers.
 KittiBox kitti_box_of(const ObjectRecord& record);
 
