@@ -9,7 +9,8 @@ set -euo pipefail
 
 build=(g++ cmake ninja-build make git xz-utils
   libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev libcli11-dev libyaml-cpp-dev nlohmann-json3-dev
-  robin-map-dev libnanoflann-dev libzstd-dev libgtest-dev libgmock-dev libembree-dev)
+  robin-map-dev libnanoflann-dev libzstd-dev libgtest-dev libgmock-dev libembree-dev
+  python3 python3-numpy)
 bench=(libbenchmark-dev)
 develop=(ccache clang-format clang-tidy-16)
 plot=(python3 python3-numpy python3-matplotlib python3-scipy)
