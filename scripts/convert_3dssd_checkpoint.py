@@ -477,9 +477,19 @@ def since_version_1(meta, coordinates):
                           "it was trained on the branch that became 1.0; with the wrong one cars lie across the road")
 
 
+def fold_biases(tensors):
+    """A bias in front of a batch norm is the same as a smaller mean; our file has none there."""
+    for name in [name for name in tensors if name.endswith(".running_mean")]:
+        sequence, number = name[:-len(".running_mean")].rsplit(".", 1)
+        bias = tensors.pop(f"{sequence}.{int(number) - 1}.bias", None)
+        if bias is not None:
+            tensors[name] = tensors[name] - bias
+
+
 def convert_conventions(tensors, arch, family, meta, coordinates):
     """Brings the numbers to our box code and batch norms."""
     bins = arch["box_code"]["angle_bins"]
+    fold_biases(tensors)
     if family in ("mmdetection3d", "pcdet-vote"):
         scale_residuals(tensors, bins, 2.0)  # theirs are in whole bins
     if family != "mmdetection3d":
