@@ -103,5 +103,35 @@ TEST(KittiTracks, WritesWhatItReads) {
   EXPECT_TRUE(read_kitti_tracks(folder.path() / "none.txt").empty());
 }
 
+TEST(KittiObjectLabels, TruncationBecomesSteps) {
+  const TempFolder folder;
+  const std::string rest = " 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0\n";
+  std::string text;
+  for (const char* share : {"0.00", "0.15", "0.30", "0.45", "0.80"})
+    text += std::string("Car ") + share + rest;
+  text += "DontCare -1 -1 -10 5 6 7 8 -1 -1 -1 -1000 -1000 -1000 -10\n";
+  const auto records = read_kitti_object_labels(folder.write("000001.txt", text));
+  ASSERT_EQ(records.size(), 6U);
+  const std::vector<int> steps{0, 0, 1, 2, 3};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_EQ(records[i].truncation, steps[i]);
+    EXPECT_EQ(records[i].occlusion, 2);
+    EXPECT_EQ(records[i].type, "car");
+    EXPECT_GE(records[i].track_id, 0);
+  }
+  EXPECT_LT(records[5].track_id, 0);
+  EXPECT_TRUE(records[0].box.center_lidar_m.isApprox(Eigen::Vector3d(20.0, -2.0, -0.95), 1e-12));
+}
+
+TEST(KittiObjectLabels, OtherColumnsAreRefused) {
+  const TempFolder folder;
+  EXPECT_THROW(read_kitti_object_labels(folder.write("a.txt", std::string(kCar) + "\n")), InputError);
+  EXPECT_THROW(read_kitti_object_labels(
+                   folder.write("b.txt", "Car x 2 -1.5 10 20 110 70 1.5 1.6 4.0 2.0 1.7 20.0 0.0\n")),
+               InputError);
+  EXPECT_THROW(read_kitti_object_labels(folder.path() / "none.txt"), InputError);
+  EXPECT_TRUE(read_kitti_object_labels(folder.write("empty.txt", "")).empty());
+}
+
 }  // namespace
 }  // namespace mlo

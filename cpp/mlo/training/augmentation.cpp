@@ -20,9 +20,7 @@ double wrapped(double angle_rad) {
 
 std::vector<bool> within(const std::vector<Point>& points, const Box3d& box) {
   std::vector<bool> inside(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    inside[i] = box.contains(points[i].p_lidar.cast<double>());
-  }
+  for (std::size_t i = 0; i < points.size(); ++i) inside[i] = is_within(points[i], box);
   return inside;
 }
 

@@ -19,7 +19,7 @@ struct SamplingConfig {
   double clearance_m = 0.2;
   double max_lift_m = 0.0;
 
-  /// Objects of a class that an example is filled up to; 0 for what has no setting.
+  /// Demanded objects of a class that an example is filled up to; 0 for what has no setting.
   int wanted(ObjectClass object_class) const {
     switch (object_class) {
       case ObjectClass::car:

@@ -24,8 +24,8 @@ bool shows(const LabelledView& view, const Eigen::Vector3d& p_lidar) {
 }
 
 std::size_t count_within(std::span<const Point> points, const Box3d& box) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      points, [&](const Point& point) { return box.contains(point.p_lidar.cast<double>()); }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(points, [&](const Point& point) { return is_within(point, box); }));
 }
 
 TrainingExample make_example(std::string name, std::vector<Point> points, std::span<const LabelledBox> labels,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "mlo/io/object_file.hpp"
 #include "mlo/io/sequence_files.hpp"
 #include "mlo/io/sweep_structure.hpp"
+#include "mlo/io/text.hpp"
 #include "mlo/io/trajectory_file.hpp"
 #include "mlo/truth/object_truth.hpp"
 
@@ -181,19 +183,34 @@ class ObjectBenchmark : public LabelledScans {
   fs::path part_;  ///< of the benchmark: training
 };
 
+/// Scans that have labels, by frame. Users may have taken any of the benchmark's.
+std::vector<ScanFile> labelled_scans(const fs::path& part) {
+  std::vector<ScanFile> scans;
+  for (const fs::directory_entry& label : fs::directory_iterator(part / "label_2")) {
+    const std::optional<std::size_t> frame = parse_count(label.path().stem().string());
+    if (!frame || label.path() != ObjectBenchmark::file_of(part / "label_2", *frame)) continue;
+    const fs::path scan = part / "velodyne" / (label.path().stem().string() + ".bin");
+    if (fs::exists(scan)) scans.push_back({.path = scan, .frame = *frame});
+  }
+  std::ranges::sort(scans, {}, &ScanFile::frame);
+  return scans;
+}
+
 std::unique_ptr<ExampleSource> open_object_benchmark(const fs::path& part, const ExampleOptions& options) {
-  OpenOptions open = options.open;
-  open.format = "folder";
-  open.sensor = open.sensor.value_or(hdl64e());
-  Dataset dataset = open_dataset(part / "velodyne", open);
-  std::vector<std::size_t> indices = scans_where(dataset, [&](std::size_t frame) {
-    return fs::exists(ObjectBenchmark::file_of(part / "label_2", frame));
-  });
-  if (indices.empty()) {
+  Dataset dataset;
+  dataset.format = "kitti_object";
+  dataset.root = part / "velodyne";
+  dataset.sensor = options.open.sensor.value_or(hdl64e());
+  std::vector<ScanFile> scans = labelled_scans(part);
+  if (scans.empty()) {
     throw InputError(
         fmt::format("{}: no label has the name of a scan of velodyne; they are called NNNNNN.txt",
                     (part / "label_2").string()));
   }
+  for (ScanFile& scan : scans) scan.duration_s = 1.0 / dataset.sensor.rate_hz;
+  std::vector<std::size_t> indices(scans.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  set_scans(dataset, std::move(scans), {.sensor = dataset.sensor});
   return std::make_unique<ObjectBenchmark>(std::move(dataset), std::move(indices), options.min_points, part);
 }
 

@@ -13,7 +13,7 @@
 namespace mlo {
 
 struct ExampleOptions {
-  OpenOptions open;
+  OpenOptions open = {};
   std::size_t min_points = 5;  ///< boxes with fewer returns are not demanded
 };
 

@@ -28,6 +28,14 @@ bool stands_alone(const std::vector<TrainingBox>& boxes, std::size_t index) {
   return true;
 }
 
+/// Its points are counted anew: an example's points may have been thinned since its boxes were made.
+BankedObject cut_out(const TrainingExample& example, const TrainingBox& label) {
+  BankedObject object{label, {}};
+  std::ranges::copy_if(example.points, std::back_inserter(object.points),
+                       [&](const Point& point) { return is_within(point, label.box); });
+  return object;
+}
+
 /// Height of the ground around a box; nothing where too little is seen there.
 std::optional<double> ground_around(std::span<const Point> points, const Box3d& box) {
   const double reach_m = 0.5 * box.size_lwh_m.head<2>().norm() + kGroundMargin_m;
@@ -68,8 +76,7 @@ std::optional<BankedObject> fitted(const BankedObject& object, const TrainingExa
 }
 
 void put_into(TrainingExample& example, BankedObject object) {
-  std::erase_if(example.points,
-                [&](const Point& point) { return object.label.box.contains(point.p_lidar.cast<double>()); });
+  std::erase_if(example.points, [&](const Point& point) { return is_within(point, object.label.box); });
   example.points.insert(example.points.end(), object.points.begin(), object.points.end());
   object.label.points = count_within(object.points, object.label.box);
   example.boxes.push_back(std::move(object.label));
@@ -85,17 +92,14 @@ bool collide(const Box3d& a, const Box3d& b, double margin_m) {
 
 void ObjectBank::add(const TrainingExample& example) {
   for (std::size_t i = 0; i < example.boxes.size(); ++i) {
-    const TrainingBox& label = example.boxes[i];
-    if (!label.demanded || label.points < limits_.min_points || !stands_alone(example.boxes, i)) continue;
-    Shelf& shelf = shelves_[label.object_class];
+    if (!example.boxes[i].demanded || !stands_alone(example.boxes, i)) continue;
+    BankedObject object = cut_out(example, example.boxes[i]);
+    if (object.points.size() < limits_.min_points) continue;
+    Shelf& shelf = shelves_[object.label.object_class];
     // Reservoir sampling: of all that were offered so far, each is kept with the same probability.
     std::size_t place = shelf.offered++;
     if (place >= limits_.objects) place = random_.bits() % shelf.offered;
     if (place >= limits_.objects) continue;
-    BankedObject object{label, {}};
-    std::ranges::copy_if(example.points, std::back_inserter(object.points), [&](const Point& point) {
-      return label.box.contains(point.p_lidar.cast<double>());
-    });
     object.points = thin_points(object.points, limits_.points);
     if (place == shelf.objects.size()) {
       shelf.objects.push_back(std::move(object));
@@ -116,7 +120,9 @@ TrainingExample place_objects(TrainingExample example, const ObjectBank& bank, c
   for (const ObjectClass object_class : kPlaced) {
     const std::span<const BankedObject> objects = bank.objects(object_class);
     if (objects.empty()) continue;
-    const auto present = std::ranges::count(example.boxes, object_class, &TrainingBox::object_class);
+    const auto present = std::ranges::count_if(example.boxes, [&](const TrainingBox& label) {
+      return label.demanded && label.object_class == object_class;
+    });
     int missing = config.wanted(object_class) - static_cast<int>(present);
     for (int tries = kTriesPerObject * missing; missing > 0 && tries > 0; --tries) {
       auto object = fitted(objects[random.bits() % objects.size()], example, config);
