@@ -40,7 +40,7 @@ std::string with_header(std::string_view header, std::string_view data) {
 }
 
 /// What the reader says of a file with this content; empty if it takes it.
-std::string problem_of(std::string_view content) {
+std::string complaint_about(std::string_view content) {
   const test::TempFolder folder;
   const auto path = folder.write("broken.safetensors", content);
   try {
@@ -109,9 +109,9 @@ TEST(Safetensors, EveryTruncationIsRefused) {
   write_safetensors(path, small_file());
   const std::string whole = bytes_of(path);
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_NE(problem_of(std::string_view(whole).substr(0, size)), "") << size;
+    EXPECT_NE(complaint_about(std::string_view(whole).substr(0, size)), "") << size;
   }
-  EXPECT_THAT(problem_of(whole + "x"), HasSubstr("too many"));
+  EXPECT_THAT(complaint_about(whole + "x"), HasSubstr("too many"));
 }
 
 TEST(Safetensors, BrokenHeadersAreRefused) {
@@ -122,29 +122,29 @@ TEST(Safetensors, BrokenHeadersAreRefused) {
     return std::string(R"({"x":{"dtype":)") + std::string(type) + R"(,"shape":)" + std::string(shape) +
            R"(,"data_offsets":)" + std::string(offsets) + "}}";
   };
-  EXPECT_EQ(problem_of(with_header(header("[1]", "[0,4]"), four)), "");
-  EXPECT_THAT(problem_of(std::string(8, '\xFF')), HasSubstr("header has"));
-  EXPECT_THAT(problem_of(with_header("{", "")), HasSubstr("not JSON"));
-  EXPECT_THAT(problem_of(with_header("\xFF{}", "")), HasSubstr("not JSON"));
-  EXPECT_THAT(problem_of(with_header("[1]", "")), HasSubstr("no JSON object"));
-  EXPECT_THAT(problem_of(with_header(R"({"x":3})", "")), HasSubstr("no JSON object"));
-  EXPECT_THAT(problem_of(with_header(R"({"__metadata__":{"a":1}})", "")), HasSubstr("no text"));
-  EXPECT_THAT(problem_of(with_header(R"({"__metadata__":[]})", "")), HasSubstr("no JSON object"));
-  EXPECT_THAT(problem_of(with_header(header("[-1]", "[0,4]"), four)), HasSubstr("no shape"));
-  EXPECT_THAT(problem_of(with_header(header("[1.5]", "[0,4]"), four)), HasSubstr("no shape"));
-  EXPECT_THAT(problem_of(with_header(header("[NaN]", "[0,4]"), four)), HasSubstr("not JSON"));
-  EXPECT_NE(problem_of(with_header(header("[1e999]", "[0,4]"), four)), "");
-  EXPECT_THAT(problem_of(with_header(header("null", "[0,4]"), four)), HasSubstr("no shape"));
-  EXPECT_THAT(problem_of(with_header(header("[2]", "[0,4]"), four)), HasSubstr("its shape needs"));
-  EXPECT_THAT(problem_of(with_header(header("[4294967296,4294967296]", "[0,4]"), four)),
+  EXPECT_EQ(complaint_about(with_header(header("[1]", "[0,4]"), four)), "");
+  EXPECT_THAT(complaint_about(std::string(8, '\xFF')), HasSubstr("header has"));
+  EXPECT_THAT(complaint_about(with_header("{", "")), HasSubstr("not JSON"));
+  EXPECT_THAT(complaint_about(with_header("\xFF{}", "")), HasSubstr("not JSON"));
+  EXPECT_THAT(complaint_about(with_header("[1]", "")), HasSubstr("no JSON object"));
+  EXPECT_THAT(complaint_about(with_header(R"({"x":3})", "")), HasSubstr("no JSON object"));
+  EXPECT_THAT(complaint_about(with_header(R"({"__metadata__":{"a":1}})", "")), HasSubstr("no text"));
+  EXPECT_THAT(complaint_about(with_header(R"({"__metadata__":[]})", "")), HasSubstr("no JSON object"));
+  EXPECT_THAT(complaint_about(with_header(header("[-1]", "[0,4]"), four)), HasSubstr("no shape"));
+  EXPECT_THAT(complaint_about(with_header(header("[1.5]", "[0,4]"), four)), HasSubstr("no shape"));
+  EXPECT_THAT(complaint_about(with_header(header("[NaN]", "[0,4]"), four)), HasSubstr("not JSON"));
+  EXPECT_NE(complaint_about(with_header(header("[1e999]", "[0,4]"), four)), "");
+  EXPECT_THAT(complaint_about(with_header(header("null", "[0,4]"), four)), HasSubstr("no shape"));
+  EXPECT_THAT(complaint_about(with_header(header("[2]", "[0,4]"), four)), HasSubstr("its shape needs"));
+  EXPECT_THAT(complaint_about(with_header(header("[4294967296,4294967296]", "[0,4]"), four)),
               HasSubstr("its shape needs"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[0,4,8]"), four)), HasSubstr("no two data_offsets"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[4,0]"), four)), HasSubstr("lies at bytes"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[4,8]"), four)), HasSubstr("lies at bytes"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[4,8]"), eight)), HasSubstr("belong to no tensor"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[0,4]"), eight)), HasSubstr("too many"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[0,4]", "\"Q4\""), four)), HasSubstr("type 'Q4'"));
-  EXPECT_THAT(problem_of(with_header(header("[1]", "[0,4]", "7"), four)), HasSubstr("type ''"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[0,4,8]"), four)), HasSubstr("no two data_offsets"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[4,0]"), four)), HasSubstr("lies at bytes"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[4,8]"), four)), HasSubstr("lies at bytes"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[4,8]"), eight)), HasSubstr("belong to no tensor"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[0,4]"), eight)), HasSubstr("too many"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[0,4]", "\"Q4\""), four)), HasSubstr("type 'Q4'"));
+  EXPECT_THAT(complaint_about(with_header(header("[1]", "[0,4]", "7"), four)), HasSubstr("type ''"));
 }
 
 TEST(Safetensors, RepeatedNamesAndOverlapsAreRefused) {
@@ -152,9 +152,10 @@ TEST(Safetensors, RepeatedNamesAndOverlapsAreRefused) {
   const std::string x = R"("x":{"dtype":"F32","shape":[1],"data_offsets":[0,4]})";
   const std::string x_after = R"("x":{"dtype":"F32","shape":[1],"data_offsets":[4,8]})";
   const std::string y = R"("y":{"dtype":"F32","shape":[2],"data_offsets":[0,8]})";
-  EXPECT_THAT(problem_of(with_header("{" + x + "," + x_after + "}", eight)), HasSubstr("'x' stands twice"));
-  EXPECT_THAT(problem_of(with_header("{" + x + "," + y + "}", eight)), HasSubstr("overlaps"));
-  EXPECT_THAT(problem_of(with_header(R"({"__metadata__":{"a":"1","a":"2"}})", "")),
+  EXPECT_THAT(complaint_about(with_header("{" + x + "," + x_after + "}", eight)),
+              HasSubstr("'x' stands twice"));
+  EXPECT_THAT(complaint_about(with_header("{" + x + "," + y + "}", eight)), HasSubstr("overlaps"));
+  EXPECT_THAT(complaint_about(with_header(R"({"__metadata__":{"a":"1","a":"2"}})", "")),
               HasSubstr("'a' stands twice"));
 }
 

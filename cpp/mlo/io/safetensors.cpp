@@ -32,7 +32,7 @@ constexpr std::uint64_t kMaxHeaderBytes = 100'000'000;  // the format's own limi
 constexpr std::size_t kAlignment = 8;  // of the numbers, as other programs that write it keep
 constexpr const char* kMetadata = "__metadata__";
 
-[[noreturn]] void fail(const std::filesystem::path& path, std::string_view problem) {
+[[noreturn]] void refuse(const std::filesystem::path& path, std::string_view problem) {
   throw InputError(
       fmt::format("{}: {}; copy the file again, or write it anew with what made it", path.string(), problem));
 }
@@ -55,7 +55,7 @@ struct ElementType {
 };
 
 constexpr std::endian kOrder = std::endian::little;
-const ElementType kTypes[] = {
+const ElementType kElementTypes[] = {
     {"F32", 4, [](const char* bytes) { return load<float>(bytes, kOrder); }},
     {"F16", 2, [](const char* bytes) { return half_to_float(load<std::uint16_t>(bytes, kOrder)); }},
     {"BF16", 2,
@@ -82,18 +82,18 @@ json parse_header(const std::filesystem::path& path, std::string_view text) {
   try {
     header = json::parse(text, watch);
   } catch (const json::exception& error) {
-    fail(path, fmt::format("its header is not JSON ({})", error.what()));
+    refuse(path, fmt::format("its header is not JSON ({})", error.what()));
   }
-  if (repeated) fail(path, fmt::format("'{}' stands twice in its header", *repeated));
-  if (!header.is_object()) fail(path, "its header is no JSON object");
+  if (repeated) refuse(path, fmt::format("'{}' stands twice in its header", *repeated));
+  if (!header.is_object()) refuse(path, "its header is no JSON object");
   return header;
 }
 
 std::map<std::string, std::string> parse_metadata(const std::filesystem::path& path, const json& entries) {
-  if (!entries.is_object()) fail(path, fmt::format("{} is no JSON object", kMetadata));
+  if (!entries.is_object()) refuse(path, fmt::format("{} is no JSON object", kMetadata));
   std::map<std::string, std::string> metadata;
   for (const auto& [name, value] : entries.items()) {
-    if (!value.is_string()) fail(path, fmt::format("{} '{}' is no text", kMetadata, name));
+    if (!value.is_string()) refuse(path, fmt::format("{} '{}' is no text", kMetadata, name));
     metadata.emplace(name, value.get<std::string>());
   }
   return metadata;
@@ -133,11 +133,12 @@ Tensor parse_tensor(const std::filesystem::path& path, const std::string& name, 
                     std::string_view data, std::vector<Range>& ranges) {
   const auto shape = counts_of(entry, "shape");
   const auto offsets = counts_of(entry, "data_offsets");
-  if (!shape) fail(path, fmt::format("tensor '{}' has no shape of whole numbers", name));
-  if (!offsets || offsets->size() != 2) fail(path, fmt::format("tensor '{}' has no two data_offsets", name));
+  if (!shape) refuse(path, fmt::format("tensor '{}' has no shape of whole numbers", name));
+  if (!offsets || offsets->size() != 2)
+    refuse(path, fmt::format("tensor '{}' has no two data_offsets", name));
   const std::string type_name = entry.value("dtype", json()).is_string() ? entry["dtype"] : "";
-  const auto* const type = std::ranges::find(kTypes, type_name, &ElementType::name);
-  if (type == std::end(kTypes)) {
+  const auto* const type = std::ranges::find(kElementTypes, type_name, &ElementType::name);
+  if (type == std::end(kElementTypes)) {
     throw InputError(fmt::format(
         "{}: tensor '{}' is of type '{}'; F32, F16, BF16, F64 and I64 can be read: convert it to one of them",
         path.string(), name, type_name));
@@ -145,12 +146,13 @@ Tensor parse_tensor(const std::filesystem::path& path, const std::string& name, 
   const std::uint64_t begin = (*offsets)[0];
   const std::uint64_t end = (*offsets)[1];
   if (begin > end || end > data.size()) {
-    fail(path, fmt::format("tensor '{}' lies at bytes {} to {} of {}; the file may be cut off", name, begin,
-                           end, data.size()));
+    refuse(path, fmt::format("tensor '{}' lies at bytes {} to {} of {}; the file may be cut off", name, begin,
+                             end, data.size()));
   }
   const auto count = product_within(*shape, data.size() / type->bytes);
   if (!count || *count * type->bytes != end - begin) {
-    fail(path, fmt::format("tensor '{}' has {} bytes, which is not what its shape needs", name, end - begin));
+    refuse(path,
+           fmt::format("tensor '{}' has {} bytes, which is not what its shape needs", name, end - begin));
   }
   Tensor tensor{{shape->begin(), shape->end()}, std::vector<float>(*count)};
   for (std::size_t i = 0; i < *count; ++i) tensor.values[i] = type->load(&data[begin + i * type->bytes]);
@@ -163,13 +165,13 @@ void check_ranges(const std::filesystem::path& path, std::vector<Range>& ranges,
   std::ranges::sort(ranges, {}, [](const Range& range) { return std::pair(range.begin, range.end); });
   std::uint64_t reached = 0;
   for (const Range& range : ranges) {
-    if (range.begin < reached) fail(path, fmt::format("tensor '{}' overlaps another", range.name));
+    if (range.begin < reached) refuse(path, fmt::format("tensor '{}' overlaps another", range.name));
     if (range.begin > reached) {
-      fail(path, fmt::format("bytes {} to {} belong to no tensor", reached, range.begin));
+      refuse(path, fmt::format("bytes {} to {} belong to no tensor", reached, range.begin));
     }
     reached = range.end;
   }
-  if (reached != size) fail(path, fmt::format("{} bytes too many at its end", size - reached));
+  if (reached != size) refuse(path, fmt::format("{} bytes too many at its end", size - reached));
 }
 
 bool fits_its_shape(const Tensor& tensor) {
@@ -205,12 +207,12 @@ std::string header_of(const std::filesystem::path& path, const TensorFile& file)
 TensorFile read_safetensors(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   if (bytes.size() < kLengthBytes)
-    fail(path, fmt::format("has {} bytes, too few for safetensors", bytes.size()));
+    refuse(path, fmt::format("has {} bytes, too few for safetensors", bytes.size()));
   const auto length = load<std::uint64_t>(bytes.data(), kOrder);
   if (length > kMaxHeaderBytes || length > bytes.size() - kLengthBytes) {
-    fail(path,
-         fmt::format("says that its header has {} bytes, but {} follow; it is cut off or not safetensors",
-                     length, bytes.size() - kLengthBytes));
+    refuse(path,
+           fmt::format("says that its header has {} bytes, but {} follow; it is cut off or not safetensors",
+                       length, bytes.size() - kLengthBytes));
   }
   const std::string_view content = std::string_view(bytes).substr(kLengthBytes);
   const json header = parse_header(path, content.substr(0, length));
@@ -221,7 +223,7 @@ TensorFile read_safetensors(const std::filesystem::path& path) {
     if (name == kMetadata) {
       file.metadata = parse_metadata(path, entry);
     } else {
-      if (!entry.is_object()) fail(path, fmt::format("tensor '{}' is no JSON object", name));
+      if (!entry.is_object()) refuse(path, fmt::format("tensor '{}' is no JSON object", name));
       file.tensors.emplace(name, parse_tensor(path, name, entry, data, ranges));
     }
   }
