@@ -2,7 +2,7 @@
 """Measures the detectors of `mlo run`: average precision, and what they do to trajectories and tracks.
 
 On simulated drives that no model was fitted on (seeds 7 and 8), boxes are judged all round by the exact truth, and the
-trajectories of runs with and without a detector by the true poses. On real data, ROOT holds kitti_tracking/training,
+trajectories of runs with and without each detector by the true poses. On real data, ROOT holds kitti_tracking/training,
 kitti_odometry, kitti_raw and truth_lidar: boxes on drive 0005 (tracking sequence 0000) are judged by its labels, beside
 published PointRCNN boxes, with the tracks made of them; trajectories on the four extracts. Prints tables, and writes
 them to OUT/detectors.md. Drives that are in OUT already are not simulated again.
@@ -20,7 +20,8 @@ SCANS = 100
 CLASSES = ["car", "van", "truck", "pedestrian", "cyclist"]
 LABELLED = ["car", "pedestrian", "cyclist"]
 # Far below what is reported, so that recall can grow as the threshold falls.
-ALL_BOXES = ["--set", "detection.cluster.min_probability=0", "--set", "detection.cluster.min_candidate=0.02"]
+ALL_BOXES = {"cluster": ["--set", "detection.cluster.min_probability=0", "--set", "detection.cluster.min_candidate=0.02"],
+             "3dssd": ["--set", "detection.network.min_confidence=0", "--set", "detection.network.min_candidate=0.02"]}
 
 
 def simulate(options, scene, seed):
@@ -53,30 +54,33 @@ def trajectory_cell(options, run, estimate_out, truth):
 
 def trajectory_rows(options, name, run, truth):
     cells = [trajectory_cell(options, [*run, "--detector", detector], options.out / "runs" / f"{name}_{detector}", truth)
-             for detector in ("none", options.detector)]
+             for detector in ("none", *options.detector)]
     return [[name, *cells]]
 
 
-def detect(options, name, folder, more=()):
+def detect(options, detector, name, folder, more=()):
     """The boxes of a drive, with the poses of its run."""
-    file = options.out / f"{name}{'_all' if more else ''}.csv"
-    poses = options.out / "runs" / f"{name}_{options.detector}" / "trajectory.txt"
+    file = options.out / f"{name}_{detector}{'_all' if more else ''}.csv"
+    poses = options.out / "runs" / f"{name}_{detector}" / "trajectory.txt"
     run_mlo(options.program, ["detect", *folder, "--out", str(file), "--poses", str(poses), "--set",
-                              f"detection.detector={options.detector}", *more])
+                              f"detection.detector={detector}", *more])
     return file
 
 
 def simulated(options):
-    arguments, trajectories = [], []
-    for scene in SCENES:
-        for seed in SEEDS:
-            drive = simulate(options, scene, seed)
-            true_poses = drive / "truth" / "poses_stamp.txt"
-            trajectories += trajectory_rows(options, f"{scene}_{seed}", [str(drive)], true_poses)
-            boxes = detect(options, f"{scene}_{seed}", [str(drive)], ALL_BOXES)
-            arguments += ["--truth", str(drive / "truth" / "objects.csv"), "--truth-poses", str(true_poses), "--estimate",
-                          str(boxes)]
-    return precision_rows("simulated", judge(options, arguments, CLASSES)), trajectories
+    drives = [(f"{scene}_{seed}", simulate(options, scene, seed)) for scene in SCENES for seed in SEEDS]
+    trajectories = []
+    for name, drive in drives:
+        trajectories += trajectory_rows(options, name, [str(drive)], drive / "truth" / "poses_stamp.txt")
+    precision = []
+    for detector in options.detector:
+        arguments = []
+        for name, drive in drives:
+            boxes = detect(options, detector, name, [str(drive)], ALL_BOXES[detector])
+            arguments += ["--truth", str(drive / "truth" / "objects.csv"), "--truth-poses",
+                          str(drive / "truth" / "poses_stamp.txt"), "--estimate", str(boxes)]
+        precision += precision_rows(f"{detector}, simulated", judge(options, arguments, CLASSES))
+    return precision, trajectories
 
 
 def tracking_rows(options, training, name, boxes):
@@ -117,14 +121,15 @@ def real(options):
         trajectories += trajectory_rows(options, sequence.name, [str(options.data / sequence.folder)],
                                         options.data / sequence.truth)
     folder = [str(training), "--sequence", "0000"]
-    every = detect(options, "0005", folder, ALL_BOXES)
-    sure = detect(options, "0005", folder)
-    precision = precision_rows(options.detector, judge(options, [*labels, "--estimate", str(every)], LABELLED))
+    precision, tracking, objects = [], [], []
+    for detector in options.detector:
+        every = detect(options, detector, "0005", folder, ALL_BOXES[detector])
+        precision += precision_rows(f"{detector}, 0005", judge(options, [*labels, "--estimate", str(every)], LABELLED))
+        tracking += tracking_rows(options, training, detector, [str(detect(options, detector, "0005", folder))])
+        objects += object_rows(options, training, detector, ["--detector", detector])
     for kind, path in zip(LABELLED, published):
-        precision += precision_rows("PointRCNN", judge(options, [*labels, "--estimate", path], [kind]))
-    tracking = tracking_rows(options, training, options.detector, [str(sure)])
+        precision += precision_rows("PointRCNN, 0005", judge(options, [*labels, "--estimate", path], [kind]))
     tracking += tracking_rows(options, training, "PointRCNN", published)
-    objects = object_rows(options, training, options.detector, ["--detector", options.detector])
     objects += object_rows(options, training, "PointRCNN", ["--detections", *published])
     return precision, tracking, objects, trajectories
 
@@ -134,7 +139,7 @@ def main():
     parser.add_argument("--data", type=Path, metavar="ROOT", help="without it only simulated drives are measured")
     parser.add_argument("--program", default="build/bin/mlo")
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--detector", default="cluster")
+    parser.add_argument("--detector", nargs="+", default=["cluster", "3dssd"], choices=list(ALL_BOXES))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     precision, trajectories = simulated(options)
@@ -144,7 +149,7 @@ def main():
         precision, trajectories = precision + more_precision, trajectories + more_trajectories
     tables = [markdown(["boxes", "class", "overlap", "IoU", "AP easy / moderate / hard", "true boxes",
                         "recall 0-10 / -20 / -30 / -40 / -50 / -70 m"], precision),
-              markdown(["drive", "no detector", options.detector], trajectories)]
+              markdown(["drive", "no detector", *options.detector], trajectories)]
     if options.data:
         tables += [markdown(["boxes", "class", "match", "HOTA", "MOTA", "FP", "FN", "IDSW"], tracking),
                    markdown(["boxes", "object", "class", "track", "frames", "switches", "ATE [m]", "RTE [m/m]",

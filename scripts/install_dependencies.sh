@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian (or Ubuntu) packages that are missing, and says which.
 #
-#   scripts/install_dependencies.sh [build] [bench] [develop] [plot]
+#   scripts/install_dependencies.sh [build] [torch] [bench] [develop] [plot]
 #
-# build (the default) is what the program and its tests need; bench adds the benchmark library; develop adds the
+# build (the default) is what the program and its tests need; torch what the training of networks needs (-DMLO_WITH_TORCH=ON;
+# OpenBLAS, as without it matrix products are fifty times slower); bench adds the benchmark library; develop adds the
 # formatter, the linter and the compiler cache; plot what scripts/*.py draw and compute with.
 set -euo pipefail
 
@@ -11,6 +12,7 @@ build=(g++ cmake ninja-build make git xz-utils
   libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev libcli11-dev libyaml-cpp-dev nlohmann-json3-dev
   robin-map-dev libnanoflann-dev libzstd-dev libgtest-dev libgmock-dev libembree-dev
   python3 python3-numpy)
+torch=(libtorch-dev libopenblas0-pthread)
 bench=(libbenchmark-dev)
 develop=(ccache clang-format clang-tidy-16)
 plot=(python3 python3-numpy python3-matplotlib python3-scipy)
@@ -19,10 +21,11 @@ wanted=()
 for group in "${@:-build}"; do
   case $group in
     build) wanted+=("${build[@]}") ;;
+    torch) wanted+=("${torch[@]}") ;;
     bench) wanted+=("${bench[@]}") ;;
     develop) wanted+=("${develop[@]}") ;;
     plot) wanted+=("${plot[@]}") ;;
-    *) echo "install_dependencies.sh: unknown group '$group'; there are build, bench, develop and plot" >&2; exit 2 ;;
+    *) echo "install_dependencies.sh: unknown group '$group'; there are build, torch, bench, develop and plot" >&2; exit 2 ;;
   esac
 done
 

@@ -13,6 +13,7 @@ void add_track(CLI::App& program);
 void add_eval(CLI::App& program);
 void add_config(CLI::App& program);
 void add_simulate(CLI::App& program);  // only where the simulator is built
+void add_train(CLI::App& program);     // only where training is built
 void add_info(CLI::App& program);
 void add_truth(CLI::App& program);
 void add_report(CLI::App& program);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include "apps/mlo/commands.hpp"
 #include "apps/mlo/config_options.hpp"
@@ -63,6 +64,10 @@ class Motion {
   std::map<std::size_t, SE3> T_map_lidar_;
 };
 
+void warn_of_problems(const Scan& scan, const PipelineConfig& config, const Network* network) {
+  for (const std::string& problem : find_detector_problems(scan, config, network)) spdlog::warn("{}", problem);
+}
+
 void run(const Options& options) {
   const Dataset dataset = open_dataset(options.folder, options.open);
   PipelineConfig base;
@@ -71,6 +76,7 @@ void run(const Options& options) {
   std::string boxes = detection_csv_header();
   std::string candidates = candidate_header();
   const Motion motion(options.poses);
+  const std::shared_ptr<const Network> network = load_network(config.detection);
   FoundObjects last;
   std::size_t last_frame = 0;
   std::size_t count = 0;
@@ -86,7 +92,8 @@ void run(const Options& options) {
       std::optional<FoundBefore> before;
       if (const auto T_now_before = motion.between(frame, last_frame)) before = {last.likely, *T_now_before};
       if (scans == 1) before.reset();
-      last = find_objects(*reading.scan, before, config);
+      if (scans == 1) warn_of_problems(*reading.scan, config, network.get());
+      last = find_objects(*reading.scan, before, config, network.get());
       last_frame = frame;
       count += last.objects.size();
       boxes += detection_csv_lines(frame, last.objects);

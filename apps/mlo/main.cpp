@@ -52,6 +52,18 @@ void add_global_options(CLI::App& program) {
       ->excludes(quiet);
 }
 
+#ifndef MLO_WITH_TORCH
+void add_missing_train(CLI::App& program) {
+  auto* command = program.add_subcommand("train", "Train the network of the detector 3dssd (not in this build)");
+  command->allow_extras();
+  command->callback([] {
+    throw mlo::InputError(
+        "this mlo was built without training: install libtorch-dev and libopenblas0-pthread "
+        "(scripts/install_dependencies.sh torch) and configure with -DMLO_WITH_TORCH=ON");
+  });
+}
+#endif
+
 /// The first word that is neither an option nor a subcommand, when no subcommand was given.
 std::string unknown_command(const CLI::App& program, const std::vector<std::string>& arguments) {
   if (!program.get_subcommands().empty()) return {};
@@ -102,6 +114,11 @@ int run(int argc, char** argv) {
   mlo::apps::add_reproduce(program);
 #ifdef MLO_WITH_SIMULATOR
   mlo::apps::add_simulate(program);
+#endif
+#ifdef MLO_WITH_TORCH
+  mlo::apps::add_train(program);
+#else
+  add_missing_train(program);
 #endif
 
   try {

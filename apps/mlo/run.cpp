@@ -160,7 +160,7 @@ void add_run(CLI::App& program) {
   command
       ->add_option("--detector", options->detector,
                    "Finds objects where no boxes are given, short for --set detection.detector=...")
-      ->check(CLI::IsMember({"none", "cluster"}))
+      ->check(CLI::IsMember({"none", "cluster", "3dssd"}))
       ->excludes("--detections");
   command->add_option("--frames", options->frames, "Only these frames, ends included: 0:99, 50:, :99")
       ->type_name("A:B");

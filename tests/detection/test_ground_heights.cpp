@@ -23,6 +23,9 @@ TEST(GroundHeights, FollowASlopeAndIgnoreWhatStandsOnIt) {
   for (const float x : {-29.0F, -10.0F, 0.0F, 10.0F, 29.0F}) {
     EXPECT_NEAR(ground.at({x, 10.0F}), -1.7F + 0.05F * x, 0.06F);
   }
+  for (float x = -25.0F; x < 25.0F; x += 0.1F) {
+    EXPECT_NEAR(ground.interpolated_at({x, 10.0F}), -1.7F + 0.05F * x, 0.015F);
+  }
 }
 
 TEST(GroundHeights, GoOnWhereNothingIsSeen) {
@@ -31,6 +34,7 @@ TEST(GroundHeights, GoOnWhereNothingIsSeen) {
   const GroundHeights ground(scan.points, scan.is_ground, 50.0);
   EXPECT_FLOAT_EQ(ground.at({-49.0F, 49.0F}), -1.5F);
   EXPECT_FLOAT_EQ(ground.at({500.0F, -500.0F}), -1.5F);
+  EXPECT_FLOAT_EQ(ground.interpolated_at({500.0F, -500.0F}), -1.5F);
 }
 
 }  // namespace

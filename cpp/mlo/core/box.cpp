@@ -49,6 +49,9 @@ SE3 Box3d::T_lidar_object() const {
 
 bool Box3d::contains(const Eigen::Vector3d& p_lidar, double margin_m) const {
   const Eigen::Vector3d d = p_lidar - center_lidar_m;
+  // Most points are far away: the circle around the box tells without its heading.
+  const Eigen::Array2d reach_m = (0.5 * size_lwh_m.head<2>().array() + margin_m).max(0.0);
+  if (d.head<2>().squaredNorm() > 1.001 * reach_m.matrix().squaredNorm()) return false;
   const double c = std::cos(yaw_rad);
   const double s = std::sin(yaw_rad);
   const Eigen::Vector3d p_object(c * d.x() + s * d.y(), -s * d.x() + c * d.y(), d.z());

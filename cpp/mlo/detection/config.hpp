@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mlo/core/fields.hpp"
@@ -65,19 +66,48 @@ struct ClusterConfig {
   }
 };
 
+/// The detector with a network, network_detector.hpp.
+struct NetworkConfig {
+  std::string weights;
+  double min_confidence = 0.3;
+  double min_candidate = 0.05;
+  double max_shared = 0.1;
+  RecurrenceConfig recurrence;
+
+  template <class Visitor>
+  void fields(Visitor& visit) {
+    visit("weights", weights, Anything{},
+          "file of the network (.safetensors), from 'mlo train' or scripts/convert_3dssd_checkpoint.py; empty: the "
+          "one that comes with mlo");
+    visit("min_confidence", min_confidence, between(0.0, 1.0),
+          "objects that the network is less sure of are not reported; lower finds more, and takes more of the "
+          "surroundings away from the localisation");
+    visit("min_candidate", min_candidate, between(0.0, 1.0),
+          "objects this sure by one scan alone are remembered, and may grow sure by the next");
+    visit("max_shared", max_shared, between(0.0, 1.0),
+          "of two boxes that share more of their ground area (intersection over union) the less sure one is "
+          "dropped");
+    visit.group("recurrence", recurrence, "What the scan before says of the boxes of this one.");
+  }
+};
+
 /// What finds the boxes where none are given.
-enum class Detector { none, cluster };
+enum class Detector { none, cluster, network };
 
 /// All of detection.
 struct DetectionConfig {
   Detector detector = Detector::cluster;
   ClusterConfig cluster;
+  NetworkConfig network;
 
   template <class Visitor>
   void fields(Visitor& visit) {
-    visit("detector", detector, Choices<Detector>{{"none", Detector::none}, {"cluster", Detector::cluster}},
-          "finds the objects where no boxes are given: none, or cluster, which needs no network");
+    visit("detector", detector,
+          Choices<Detector>{
+              {"none", Detector::none}, {"cluster", Detector::cluster}, {"3dssd", Detector::network}},
+          "finds the objects where no boxes are given: none; cluster, which needs no network; 3dssd, a network");
     visit.group("cluster", cluster, "The detector without a network.");
+    visit.group("network", network, "The detector with a network, 3dssd.");
   }
 };
 

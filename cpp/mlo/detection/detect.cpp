@@ -1,11 +1,13 @@
 #include "mlo/detection/detect.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 
 #include "mlo/core/log_odds.hpp"
 #include "mlo/detection/cluster_detector.hpp"
 #include "mlo/detection/consistency.hpp"
+#include "mlo/detection/network_detector.hpp"
 
 namespace mlo {
 namespace {
@@ -20,16 +22,17 @@ double confidence_of(double object_probability) {
   return probability(kEvenLogit + kLogitPerLogOdds * log_odds(object_probability));
 }
 
-FoundObjects detect_by_clusters(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
-                                const std::optional<FoundBefore>& before, const ClusterConfig& config) {
+/// What is told by one scan, in view of the scan before.
+FoundObjects judge(std::vector<Detection> likely, const std::optional<FoundBefore>& before,
+                   const RecurrenceConfig& recurrence, double min_probability) {
   FoundObjects found;
-  found.likely = detect_clusters(points, is_ground, config);
+  found.likely = std::move(likely);
   if (before) {
     found.likely =
-        weigh_by_previous(std::move(found.likely), before->likely, before->T_now_before, config.recurrence);
+        weigh_by_previous(std::move(found.likely), before->likely, before->T_now_before, recurrence);
   }
   for (Detection object : found.likely) {
-    if (object.confidence < config.min_probability) continue;
+    if (object.confidence < min_probability) continue;
     object.confidence = confidence_of(object.confidence);
     found.objects.push_back(object);
   }
@@ -40,10 +43,17 @@ FoundObjects detect_by_clusters(std::span<const Point> points, std::span<const s
 }  // namespace
 
 FoundObjects detect(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
-                    const std::optional<FoundBefore>& before, const DetectionConfig& config) {
+                    const std::optional<FoundBefore>& before, const DetectionConfig& config,
+                    const Network* network) {
+  const ClusterConfig& cluster = config.cluster;
   switch (config.detector) {
     case Detector::cluster:
-      return detect_by_clusters(points, is_ground, before, config.cluster);
+      return judge(detect_clusters(points, is_ground, cluster), before, cluster.recurrence,
+                   cluster.min_probability);
+    case Detector::network:
+      assert(network != nullptr);
+      return judge(detect_with_network(points, is_ground, *network, config.network), before,
+                   config.network.recurrence, config.network.min_confidence);
     case Detector::none:
       break;
   }

@@ -9,6 +9,7 @@
 #include "mlo/core/se3.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/detection/config.hpp"
+#include "mlo/network/network.hpp"
 
 namespace mlo {
 
@@ -28,7 +29,9 @@ struct FoundBefore {
 /// finite.
 /// @param is_ground  per point: 1 ground, 0 not
 /// @param before     nothing: the scan is judged by itself
+/// @param network    needed by that detector alone
 FoundObjects detect(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
-                    const std::optional<FoundBefore>& before, const DetectionConfig& config);
+                    const std::optional<FoundBefore>& before, const DetectionConfig& config,
+                    const Network* network = nullptr);
 
 }  // namespace mlo

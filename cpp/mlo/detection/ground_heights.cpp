@@ -68,4 +68,17 @@ float GroundHeights::at(const Eigen::Vector2f& p_lidar) const {
   return z_[place(index_of(p_lidar.x()), index_of(p_lidar.y()))];
 }
 
+float GroundHeights::interpolated_at(const Eigen::Vector2f& p_lidar) const {
+  const Eigen::Vector2f lower = p_lidar.array() - 0.5F * kCell_m;
+  const auto share = [&](float coordinate) {
+    const float cells = (coordinate + reach_m_) / kCell_m;
+    return cells - std::floor(cells);
+  };
+  const float a = share(lower.x());
+  const float b = share(lower.y());
+  const Eigen::Vector2f upper = lower.array() + kCell_m;
+  return (1.0F - b) * ((1.0F - a) * at(lower) + a * at({upper.x(), lower.y()})) +
+         b * ((1.0F - a) * at({lower.x(), upper.y()}) + a * at(upper));
+}
+
 }  // namespace mlo

@@ -19,6 +19,8 @@ class GroundHeights {
   /// z of the ground in the lidar frame [m]; that of the nearest cell beyond the reach. 0 where no ground was
   /// seen at all.
   float at(const Eigen::Vector2f& p_lidar) const;
+  /// The same between the middles of the cells around: without steps.
+  float interpolated_at(const Eigen::Vector2f& p_lidar) const;
   bool empty() const { return !found_; }
 
  private:

@@ -205,7 +205,10 @@ std::string header_of(const std::filesystem::path& path, const TensorFile& file)
 }  // namespace
 
 TensorFile read_safetensors(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
+  return parse_safetensors(read_file(path), path);
+}
+
+TensorFile parse_safetensors(std::string_view bytes, const std::filesystem::path& path) {
   if (bytes.size() < kLengthBytes)
     refuse(path, fmt::format("has {} bytes, too few for safetensors", bytes.size()));
   const auto length = load<std::uint64_t>(bytes.data(), kOrder);
@@ -214,7 +217,7 @@ TensorFile read_safetensors(const std::filesystem::path& path) {
            fmt::format("says that its header has {} bytes, but {} follow; it is cut off or not safetensors",
                        length, bytes.size() - kLengthBytes));
   }
-  const std::string_view content = std::string_view(bytes).substr(kLengthBytes);
+  const std::string_view content = bytes.substr(kLengthBytes);
   const json header = parse_header(path, content.substr(0, length));
   const std::string_view data = content.substr(length);
   TensorFile file;

@@ -12,6 +12,10 @@ namespace mlo {
 /// @throws InputError naming the file, what is wrong in it and the remedy
 TensorFile read_safetensors(const std::filesystem::path& path);
 
+/// The same for bytes at hand.
+/// @param place  what messages call them
+TensorFile parse_safetensors(std::string_view bytes, const std::filesystem::path& place);
+
 /// Writes F32 in little-endian order, by name. The same content gives the same bytes; the file appears whole
 /// or not at all.
 /// @throws InputError if a tensor has not as many values as its shape says, a text is not UTF-8, or the file

@@ -9,6 +9,7 @@
 #include "mlo/mapping/place_search.hpp"
 #include "mlo/odometry/two_step_ego.hpp"
 #include "mlo/perception/perceive.hpp"
+#include "mlo/pipeline/find_objects.hpp"
 #include "mlo/pipeline/prepare.hpp"
 
 namespace mlo {
@@ -96,6 +97,7 @@ std::vector<FeaturePoint> candidates_above_ground(const Percept& seen) {
 
 Pipeline::Pipeline(const PipelineConfig& config)
     : config_(config),
+      network_(load_network(config.detection)),
       local_maps_{LocalMap(config.mapping.local_map), LocalMap(config.mapping.local_map),
                   LocalMap(config.mapping.local_map)},
       static_map_(config.mapping.static_map, config.mapping.free_space),
@@ -173,7 +175,7 @@ FrameResult Pipeline::process_scan(const Scan& scan, std::optional<std::span<con
 FoundObjects Pipeline::find_objects(const Scan& prepared, const GroundSegmentation& ground) const {
   std::optional<FoundBefore> before;
   if (!state_.empty) before = {state_.likely_objects, predict(timing(prepared)).inverse()};
-  return detect(prepared.points, ground.is_ground, before, config_.detection);
+  return detect(prepared.points, ground.is_ground, before, config_.detection, network_.get());
 }
 
 SweepTiming Pipeline::timing(const Scan& scan) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -27,6 +28,7 @@ namespace mlo {
 /// The whole system, scan by scan (the paper's Fig. 2). Not thread-safe; runs on the caller's TBB arena.
 class Pipeline {
  public:
+  /// @throws InputError if the detector of the configuration needs a network whose weights cannot be used
   explicit Pipeline(const PipelineConfig& config);
   /// Localises in the map of an earlier run and makes none: the map frame is that map's. Until the place is
   /// found, each scan is looked for around where it should be, and objects are not followed.
@@ -43,6 +45,8 @@ class Pipeline {
   /// Poses by constant motion, this many sweeps after the last scan that was processed.
   PredictedPoses predict_poses(double sweeps_ahead) const;
 
+  /// Of the detector; nothing if it needs none.
+  const Network* network() const { return network_.get(); }
   const StaticMap& static_map() const { return static_map_; }
   /// Of the objects that are followed; those of others were in FrameResult::finished_objects.
   std::vector<MappedObject> object_maps() const;
@@ -125,6 +129,7 @@ class Pipeline {
               FrameResult& result);
 
   PipelineConfig config_;
+  std::shared_ptr<const Network> network_;  ///< of the detector, if it needs one
   State state_;
   LocalMaps local_maps_;
   StaticMap static_map_;

@@ -11,6 +11,7 @@
 #include "mlo/io/detection_check.hpp"
 #include "mlo/pipeline/checkpoint.hpp"
 #include "mlo/pipeline/close_loops.hpp"
+#include "mlo/pipeline/find_objects.hpp"
 #include "mlo/pipeline/move_results.hpp"
 #include "mlo/pipeline/pipeline.hpp"
 #include "mlo/pipeline/run_output.hpp"
@@ -73,6 +74,8 @@ std::string boxes_from(bool given, Detector detector) {
   switch (detector) {
     case Detector::cluster:
       return "cluster";
+    case Detector::network:
+      return "3dssd";
     case Detector::none:
       break;
   }
@@ -229,6 +232,11 @@ void Run::process(const Scan& scan) {
   progress_.stamp_s = scan.stamp_s;
   progress_.duration_s = scan.duration_s;
   progress_.skipped_since = 0.0;
+  if (!detections_ && progress_.summary.processed == 0) {
+    for (std::string& problem : find_detector_problems(scan, config_, pipeline_.network())) {
+      progress_.summary.warnings.push_back(std::move(problem));
+    }
+  }
   FrameResult result = detections_
                            ? pipeline_.process(scan, detections_->detections_at(scan.frame, scan.stamp_s))
                            : pipeline_.process(scan);

@@ -15,12 +15,6 @@ constexpr double kFullyVisible = 0.75;
 constexpr double kPartlyVisible = 0.35;
 constexpr int kUnknownOcclusion = 3;
 
-/// Height in the image of a camera like KITTI's that looks at the box.
-double height_all_round_px(const Box3d& box) {
-  const double range_m = box.center_lidar_m.head<2>().norm();
-  return kKittiFocal_px * box.size_lwh_m.z() / std::max(range_m, 1.0);
-}
-
 std::optional<double> height_in_image_px(const Box3d& box, const LabelledView& view) {
   const auto image = project_box(box_in_camera(box, view.T_camera0_lidar), view.P2, view.image_size_px);
   if (!image) return std::nullopt;
@@ -49,6 +43,11 @@ std::vector<ScoredBox> scored_boxes(std::span<const DetectionRecord> records,
 }
 
 }  // namespace
+
+double height_all_round_px(const Box3d& box) {
+  const double range_m = box.center_lidar_m.head<2>().norm();
+  return kKittiFocal_px * box.size_lwh_m.z() / std::max(range_m, 1.0);
+}
 
 LabelledFrames labelled_boxes(std::span<const ObjectRecord> records, const SE3& T_camera0_lidar) {
   LabelledFrames frames;

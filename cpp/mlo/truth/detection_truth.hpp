@@ -19,6 +19,9 @@ namespace mlo {
 /// True boxes by frame, in the lidar frame.
 using LabelledFrames = std::map<std::size_t, std::vector<LabelledBox>>;
 
+/// Height in the image of a camera like KITTI's that looks at the box, wherever it is [px].
+double height_all_round_px(const Box3d& box_lidar);
+
 /// KITTI labels, graded by what they say themselves. DontCare regions have no 3D box and are left out.
 LabelledFrames labelled_boxes(std::span<const ObjectRecord> records, const SE3& T_camera0_lidar);
 
