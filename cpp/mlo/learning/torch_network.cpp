@@ -15,7 +15,8 @@ using TorchTensor = torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-constexpr double kMomentum = 0.1;          // of running statistics
+// Of running statistics: batches are small, and a street has other statistics than a car park.
+constexpr double kMomentum = 0.01;
 constexpr double kFirstConfidence = 0.05;  // of an untrained network, so that its many false answers cost little
 
 // Rows of a batch's groups, with the indices of all examples in one.
