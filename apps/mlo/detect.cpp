@@ -65,7 +65,8 @@ class Motion {
 };
 
 void warn_of_problems(const Scan& scan, const PipelineConfig& config, const Network* network) {
-  for (const std::string& problem : find_detector_problems(scan, config, network)) spdlog::warn("{}", problem);
+  for (const std::string& problem : find_detector_problems(scan, config, network))
+    spdlog::warn("{}", problem);
 }
 
 void run(const Options& options) {

@@ -54,7 +54,8 @@ void add_global_options(CLI::App& program) {
 
 #ifndef MLO_WITH_TORCH
 void add_missing_train(CLI::App& program) {
-  auto* command = program.add_subcommand("train", "Train the network of the detector 3dssd (not in this build)");
+  auto* command =
+      program.add_subcommand("train", "Train the network of the detector 3dssd (not in this build)");
   command->allow_extras();
   command->callback([] {
     throw mlo::InputError(

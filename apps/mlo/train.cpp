@@ -82,8 +82,9 @@ void run(const Options& options) {
       train(config, options.training, std::ref(display), [] { return stop_requested.load(); });
   display.finish();
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
-  std::cout << fmt::format("{} steps on {} scans, judged by {}; results in {}: weights.safetensors, curves.csv, curves.svg\n",
-                           report.steps, report.examples, report.validation, options.training.out.string());
+  std::cout << fmt::format(
+      "{} steps on {} scans, judged by {}; results in {}: weights.safetensors, curves.csv, curves.svg\n",
+      report.steps, report.examples, report.validation, options.training.out.string());
   if (report.interrupted) {
     spdlog::warn("stopped early; --resume goes on from the last line of curves.csv");
     throw CLI::RuntimeError(kInterrupted);
@@ -93,22 +94,32 @@ void run(const Options& options) {
 }  // namespace
 
 void add_train(CLI::App& program) {
-  auto* command = program.add_subcommand("train", "Train the network of the detector 3dssd on labelled scans");
+  auto* command =
+      program.add_subcommand("train", "Train the network of the detector 3dssd on labelled scans");
   const auto options = std::make_shared<Options>();
   TrainingOptions& training = options->training;
-  command->add_option("folders", training.folders,
-                      "Simulated drives, KITTI tracking, raw or object data: whatever has labels")
+  command
+      ->add_option("folders", training.folders,
+                   "Simulated drives, KITTI tracking, raw or object data: whatever has labels")
       ->type_name("FOLDER");
-  command->add_option("--out", training.out, "Folder for weights, curves and state; made if missing")->type_name("DIR");
+  command->add_option("--out", training.out, "Folder for weights, curves and state; made if missing")
+      ->type_name("DIR");
   command->add_option("--validate", training.validation, "Labelled scans to judge by, while training")
       ->type_name("FOLDER");
-  command->add_option("--start", training.start, "Weights to begin with instead of random ones; their architecture")
+  command
+      ->add_option("--start", training.start,
+                   "Weights to begin with instead of random ones; their architecture")
       ->type_name("FILE");
-  command->add_flag("--resume", training.resume, "Go on where a training with the same DIR, folders and settings stopped");
-  command->add_option("--validate-every", training.validate_every, "Steps between two judgements and saved states")
+  command->add_flag("--resume", training.resume,
+                    "Go on where a training with the same DIR, folders and settings stopped");
+  command
+      ->add_option("--validate-every", training.validate_every,
+                   "Steps between two judgements and saved states")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--validation-scans", training.max_validation, "Judge by so many scans at most, spread over all")
+  command
+      ->add_option("--validation-scans", training.max_validation,
+                   "Judge by so many scans at most, spread over all")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("--set", options->settings, "A setting: epochs=20, augmentation.sampling.cars=10")

@@ -31,8 +31,9 @@ BENCHMARK(detect_in_street_by_3dssd)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchm
 NetworkInput street_input() {
   const test::MadeScan scan = test::make_street();
   const NetworkInputSpec spec = small_architecture().input;
-  return network_input(network_points(scan.points, scan.is_ground, NetworkFrame(scan.points, scan.is_ground, spec), spec),
-                       spec);
+  return network_input(
+      network_points(scan.points, scan.is_ground, NetworkFrame(scan.points, scan.is_ground, spec), spec),
+      spec);
 }
 
 // The parts of the first layer, and all of the network.

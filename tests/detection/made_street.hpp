@@ -10,8 +10,7 @@ namespace mlo::test {
 inline MadeScan make_street() {
   std::vector<Box3d> cars;
   for (int k = 0; k < 24; ++k) {
-    cars.push_back(
-        standing(-36.0 + 3.1 * k, k % 2 == 0 ? 5.5 : -5.5, {4.1, 1.75, 1.5}, 0.05 * (k % 5)));
+    cars.push_back(standing(-36.0 + 3.1 * k, k % 2 == 0 ? 5.5 : -5.5, {4.1, 1.75, 1.5}, 0.05 * (k % 5)));
   }
   MadeScan scan;
   scan.add_ground(cars, 60.0);

@@ -24,6 +24,12 @@ std::vector<Point> points_of(const test::MadeScan& scan, const NetworkInputSpec&
   return network_points(scan.points, scan.is_ground, NetworkFrame(scan.points, scan.is_ground, spec), spec);
 }
 
+NetworkConfig everything() {
+  NetworkConfig config;
+  config.min_candidate = 0.0;
+  return config;
+}
+
 TEST(NetworkInput, HoldsWhatTheNetworkKnows) {
   test::MadeScan scan = test::street_with(test::kParkedCars);
   const NetworkInputSpec spec = architecture_for(500).input;
@@ -56,7 +62,7 @@ TEST(NetworkInput, KeepsGroundAndAnglesAsAsked) {
 
 TEST(NetworkDetector, FindsTheSameWhereverTheLidarIsMounted) {
   const Network network(test::random_weights(architecture_for(100000)));
-  const NetworkConfig config{.min_candidate = 0.0};
+  const NetworkConfig config = everything();
   test::MadeScan scan = test::street_with(test::kParkedCars);
   const std::vector<Detection> low = detect_with_network(scan.points, scan.is_ground, network, config);
   ASSERT_FALSE(low.empty());
@@ -64,13 +70,15 @@ TEST(NetworkDetector, FindsTheSameWhereverTheLidarIsMounted) {
   const std::vector<Detection> high = detect_with_network(scan.points, scan.is_ground, network, config);
   ASSERT_EQ(low.size(), high.size());
   for (std::size_t i = 0; i < low.size(); ++i) {
-    EXPECT_LT((low[i].box.center_lidar_m - high[i].box.center_lidar_m - Eigen::Vector3d(0.0, 0.0, 0.5)).norm(), 0.01);
+    EXPECT_LT(
+        (low[i].box.center_lidar_m - high[i].box.center_lidar_m - Eigen::Vector3d(0.0, 0.0, 0.5)).norm(),
+        0.01);
   }
 }
 
 TEST(NetworkDetector, FindsNothingWithoutGroundOrPoints) {
   const Network network(test::random_weights(architecture_for(500)));
-  const NetworkConfig config{.min_candidate = 0.0};
+  const NetworkConfig config = everything();
   test::MadeScan scan = test::street_with(test::kParkedCars);
   EXPECT_TRUE(detect_with_network({}, {}, network, config).empty());
   std::ranges::fill(scan.is_ground, 0);

@@ -21,13 +21,15 @@ PointRows one_row(const Eigen::Vector3d& p) {
 TEST(Centerness, IsOneInTheMiddleAndZeroOutside) {
   EXPECT_DOUBLE_EQ(centerness(kCar, kCar.center_lidar_m), 1.0);
   // A quarter of the length ahead of the middle: 1 m to the front, 3 m to the back.
-  EXPECT_NEAR(centerness(kCar, kCar.T_lidar_object() * Eigen::Vector3d(1.0, 0.0, 0.0)), std::cbrt(1.0 / 3.0), 1e-9);
+  EXPECT_NEAR(centerness(kCar, kCar.T_lidar_object() * Eigen::Vector3d(1.0, 0.0, 0.0)), std::cbrt(1.0 / 3.0),
+              1e-9);
   EXPECT_NEAR(centerness(kCar, kCar.T_lidar_object() * Eigen::Vector3d(2.0, 0.0, 0.0)), 0.0, 1e-4);
   EXPECT_DOUBLE_EQ(centerness(kCar, {0.0, 0.0, 0.0}), 0.0);
 }
 
 TEST(AssignTargets, TellsObjectBackgroundAndDoubt) {
-  const std::vector<TargetBox> boxes{{kCar, 0}, {{{-8.0, 0.0, 0.9}, {0.6, 0.6, 1.8}, 0.0}, TargetBox::kIgnored}};
+  const std::vector<TargetBox> boxes{{kCar, 0},
+                                     {{{-8.0, 0.0, 0.9}, {0.6, 0.6, 1.8}, 0.0}, TargetBox::kIgnored}};
   const auto class_at = [&](const Eigen::Vector3d& p) {
     return assign_targets(one_row(p), one_row(p), boxes, kKnown).class_index.front();
   };

@@ -99,7 +99,11 @@ TEST_F(Training, RefusesTheStateOfAnother) {
 
 TEST(Level, PutsPointsAndBoxesAboveTheGround) {
   const NetworkInputSpec spec = small_architecture().input;
-  const TrainingExample before = test::made_street(3);
+  // As much ground as a lidar sees: where objects are most of what is seen, some of them is taken for it.
+  const TrainingExample street = test::made_street(3);
+  const std::vector<LabelledBox> labels(street.boxes.begin(), street.boxes.end());
+  const TrainingExample before =
+      make_example("street", test::made_points(labels, 3, 40, 60000), labels, std::nullopt, 5);
   const std::optional<TrainingExample> after = level(before, spec);
   ASSERT_TRUE(after);
   ASSERT_EQ(after->boxes.size(), before.boxes.size());

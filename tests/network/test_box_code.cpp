@@ -29,7 +29,8 @@ TEST(BoxCode, DecodingUndoesEncoding) {
     for (double yaw_rad = -3.1; yaw_rad < 3.14; yaw_rad += 0.037) {
       const Box3d box{{12.0, -3.0, 0.8}, {4.6, 1.8, 1.6}, yaw_rad};
       const Eigen::Vector3d candidate(11.3, -2.2, 0.9);
-      const Box3d decoded = decode_box(full_code(box, candidate, 0, architecture), candidate, 0, architecture);
+      const Box3d decoded =
+          decode_box(full_code(box, candidate, 0, architecture), candidate, 0, architecture);
       EXPECT_LT((decoded.center_lidar_m - box.center_lidar_m).norm(), 1e-5);
       EXPECT_LT((decoded.size_lwh_m - box.size_lwh_m).norm(), 1e-5);
       EXPECT_NEAR(std::remainder(decoded.yaw_rad - yaw_rad, 2.0 * std::numbers::pi), 0.0, 1e-6);
@@ -56,7 +57,8 @@ TEST(BoxCode, WildSizesStayFinite) {
 
 TEST(BoxCode, OnlyTheSureAreDecoded) {
   const NetworkArchitecture architecture = test::tiny_architecture();
-  NetworkOutput output{PointRows::Zero(3, 3), RowMatrix(3, 2), RowMatrix::Zero(3, architecture.box_code.size())};
+  NetworkOutput output{PointRows::Zero(3, 3), RowMatrix(3, 2),
+                       RowMatrix::Zero(3, architecture.box_code.size())};
   output.class_logits << 0.1F, -3.0F, -2.0F, -4.0F, 0.0F, 2.0F;
   const std::vector<Detection> boxes = decode_boxes(output, architecture, 0.5);
   ASSERT_EQ(boxes.size(), 2U);

@@ -29,20 +29,23 @@ TEST(Network, OutputHasARowPerCandidate) {
 RowMatrix plain_sequence(const TensorFile& file, const SequenceSpec& spec, const RowMatrix& input) {
   const auto vector = [&](const std::string& name) {
     const std::vector<float>& values = file.tensors.at(name).values;
-    return Eigen::RowVectorXf(Eigen::Map<const Eigen::RowVectorXf>(values.data(), static_cast<Eigen::Index>(values.size())));
+    return Eigen::RowVectorXf(
+        Eigen::Map<const Eigen::RowVectorXf>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
   RowMatrix rows = input;
   for (std::size_t k = 0; k + 1 < spec.channels.size(); ++k) {
     const Eigen::RowVectorXf flat = vector(weight_name(spec, k) + ".weight");
     const Eigen::Map<const RowMatrix> weight(flat.data(), spec.channels[k + 1], spec.channels[k]);
     rows = (rows * weight.transpose()).eval();
-    if (spec.plain_end && k + 2 == spec.channels.size()) return rows.rowwise() + vector(weight_name(spec, k) + ".bias");
+    if (spec.plain_end && k + 2 == spec.channels.size())
+      return rows.rowwise() + vector(weight_name(spec, k) + ".bias");
     const std::string norm = norm_name(spec, k);
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      rows.row(i) = ((rows.row(i) - vector(norm + ".running_mean")).array() /
-                         (vector(norm + ".running_var").array() + 1e-5F).sqrt() * vector(norm + ".weight").array() +
-                     vector(norm + ".bias").array())
-                        .max(0.0F);
+      rows.row(i) =
+          ((rows.row(i) - vector(norm + ".running_mean")).array() /
+               (vector(norm + ".running_var").array() + 1e-5F).sqrt() * vector(norm + ".weight").array() +
+           vector(norm + ".bias").array())
+              .max(0.0F);
     }
   }
   return rows;
@@ -59,9 +62,10 @@ TEST(Network, EqualsItsDefinition) {
     RowMatrix all(centers.rows(), 0);
     for (std::size_t s = 0; s < spec.scales.size(); ++s) {
       const ScaleSpec& scale = spec.scales[s];
-      const Groups groups = query_balls(points, centers,
-                                        {static_cast<float>(scale.inner_radius_m), static_cast<float>(scale.radius_m),
-                                         static_cast<std::size_t>(scale.neighbours)});
+      const Groups groups =
+          query_balls(points, centers,
+                      {static_cast<float>(scale.inner_radius_m), static_cast<float>(scale.radius_m),
+                       static_cast<std::size_t>(scale.neighbours)});
       RowMatrix pooled = RowMatrix::Zero(centers.rows(), scale.channels.back());
       for (Eigen::Index i = 0; i < centers.rows(); ++i) {
         for (std::uint32_t m = groups.begins[static_cast<std::size_t>(i)];
@@ -80,19 +84,22 @@ TEST(Network, EqualsItsDefinition) {
   for (std::size_t k = 0; k < kTiny.layers.size(); ++k) {
     const std::vector<std::uint32_t> chosen = sample(points, features, kTiny.layers[k].samples);
     PointRows centers(static_cast<Eigen::Index>(chosen.size()), 3);
-    for (std::size_t i = 0; i < chosen.size(); ++i) centers.row(static_cast<Eigen::Index>(i)) = points.row(chosen[i]);
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      centers.row(static_cast<Eigen::Index>(i)) = points.row(chosen[i]);
     features = describe(centers, kTiny.layers[k], sequences.layers[k]);
     points = centers;
   }
   const RowMatrix shifts = plain_sequence(file, sequences.vote, features.topRows(32));
   const PointRows candidates = points.topRows(32) + limited_shifts(shifts, kTiny.vote.max_shift_m);
-  const RowMatrix described =
-      plain_sequence(file, sequences.shared, describe(candidates, kTiny.candidate_layer, sequences.candidates));
+  const RowMatrix described = plain_sequence(
+      file, sequences.shared, describe(candidates, kTiny.candidate_layer, sequences.candidates));
 
   const NetworkOutput output = Network(file)(input);
   EXPECT_LT((output.candidates - candidates).cwiseAbs().maxCoeff(), 1e-4F);
-  EXPECT_LT((output.class_logits - plain_sequence(file, sequences.classes, described)).cwiseAbs().maxCoeff(), 1e-3F);
-  EXPECT_LT((output.box_codes - plain_sequence(file, sequences.boxes, described)).cwiseAbs().maxCoeff(), 1e-3F);
+  EXPECT_LT((output.class_logits - plain_sequence(file, sequences.classes, described)).cwiseAbs().maxCoeff(),
+            1e-3F);
+  EXPECT_LT((output.box_codes - plain_sequence(file, sequences.boxes, described)).cwiseAbs().maxCoeff(),
+            1e-3F);
 }
 
 TEST(Network, IsTheSameForAnyNumberOfThreads) {

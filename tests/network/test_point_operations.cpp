@@ -73,7 +73,8 @@ Groups query_plainly(const PointRows& points, const PointRows& centers, const Ba
 TEST(QueryBalls, EqualsTheDefinition) {
   const PointRows points = test::random_input(2500).points;
   const PointRows centers = test::random_input(200, 8).points;
-  for (const BallQuery query : {BallQuery{0.0F, 1.5F, 8}, BallQuery{0.7F, 2.5F, 1000}, BallQuery{0.0F, 0.01F, 4}}) {
+  for (const BallQuery query :
+       {BallQuery{0.0F, 1.5F, 8}, BallQuery{0.7F, 2.5F, 1000}, BallQuery{0.0F, 0.01F, 4}}) {
     const Groups groups = query_balls(points, centers, query);
     const Groups expected = query_plainly(points, centers, query);
     EXPECT_EQ(groups.begins, expected.begins);
@@ -91,7 +92,8 @@ TEST(QueryBalls, IsTheSameForAnyNumberOfThreads) {
 
 TEST(QueryBalls, HandlesNothing) {
   const BallQuery query{0.0F, 1.0F, 4};
-  EXPECT_EQ(query_balls(PointRows(0, 3), PointRows::Zero(2, 3), query).begins, (std::vector<std::uint32_t>{0, 0, 0}));
+  EXPECT_EQ(query_balls(PointRows(0, 3), PointRows::Zero(2, 3), query).begins,
+            (std::vector<std::uint32_t>{0, 0, 0}));
   EXPECT_EQ(query_balls(PointRows::Zero(2, 3), PointRows(0, 3), query).size(), 0U);
 }
 

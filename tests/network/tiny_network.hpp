@@ -50,7 +50,8 @@ class WeightMaker {
   void add(const SequenceSpec& spec) {
     for (std::size_t k = 0; k + 1 < spec.channels.size(); ++k) {
       const std::string name = weight_name(spec, k);
-      put(name + ".weight", {spec.channels[k + 1], spec.channels[k]}, 0.0F, 1.0F / std::sqrt(static_cast<float>(spec.channels[k])));
+      put(name + ".weight", {spec.channels[k + 1], spec.channels[k]}, 0.0F,
+          1.0F / std::sqrt(static_cast<float>(spec.channels[k])));
       if (spec.plain_end && k + 2 == spec.channels.size()) {
         put(name + ".bias", {spec.channels[k + 1]}, 0.0F, 0.1F);
         continue;

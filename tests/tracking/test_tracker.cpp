@@ -14,7 +14,6 @@ using test::car;
 using test::kDegree;
 using test::kDt_s;
 
-
 const TrackedObject* find(const std::vector<TrackedObject>& objects, long id) {
   for (const TrackedObject& object : objects) {
     if (object.id == id) return &object;

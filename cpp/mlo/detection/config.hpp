@@ -77,11 +77,13 @@ struct NetworkConfig {
   template <class Visitor>
   void fields(Visitor& visit) {
     visit("weights", weights, Anything{},
-          "file of the network (.safetensors), from 'mlo train' or scripts/convert_3dssd_checkpoint.py; empty: the "
+          "file of the network (.safetensors), from 'mlo train' or scripts/convert_3dssd_checkpoint.py; "
+          "empty: the "
           "one that comes with mlo");
-    visit("min_confidence", min_confidence, between(0.0, 1.0),
-          "objects that the network is less sure of are not reported; lower finds more, and takes more of the "
-          "surroundings away from the localisation");
+    visit(
+        "min_confidence", min_confidence, between(0.0, 1.0),
+        "objects that the network is less sure of are not reported; lower finds more, and takes more of the "
+        "surroundings away from the localisation");
     visit("min_candidate", min_candidate, between(0.0, 1.0),
           "objects this sure by one scan alone are remembered, and may grow sure by the next");
     visit("max_shared", max_shared, between(0.0, 1.0),
@@ -105,7 +107,8 @@ struct DetectionConfig {
     visit("detector", detector,
           Choices<Detector>{
               {"none", Detector::none}, {"cluster", Detector::cluster}, {"3dssd", Detector::network}},
-          "finds the objects where no boxes are given: none; cluster, which needs no network; 3dssd, a network");
+          "finds the objects where no boxes are given: none; cluster, which needs no network; 3dssd, a "
+          "network");
     visit.group("cluster", cluster, "The detector without a network.");
     visit.group("network", network, "The detector with a network, 3dssd.");
   }

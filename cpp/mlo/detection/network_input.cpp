@@ -31,7 +31,8 @@ std::vector<Point> network_points(std::span<const Point> points, std::span<const
     Point point = points[i];
     const Eigen::Vector2f p = point.p_lidar.head<2>();
     if (p.norm() >= max_range_m || std::abs(std::atan2(p.y(), p.x())) > half_angle_rad) continue;
-    point.p_lidar.z() += static_cast<float>(frame.shift_at(static_cast<double>(p.x()), static_cast<double>(p.y())));
+    point.p_lidar.z() +=
+        static_cast<float>(frame.shift_at(static_cast<double>(p.x()), static_cast<double>(p.y())));
     const double height_m = static_cast<double>(point.p_lidar.z()) + spec.sensor_height_m;
     if (height_m >= spec.min_height_m && height_m <= spec.max_height_m) taken.push_back(point);
   }

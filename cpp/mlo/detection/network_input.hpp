@@ -13,12 +13,13 @@
 
 namespace mlo {
 
-/// Networks see scans in a frame that does not depend on where the lidar is mounted: x and y as in the lidar frame,
-/// z from the ground (NetworkInputSpec::sensor_height_m below the lidar's origin).
+/// Networks see scans in a frame that does not depend on where the lidar is mounted: x and y as in the lidar
+/// frame, z from the ground (NetworkInputSpec::sensor_height_m below the lidar's origin).
 class NetworkFrame {
  public:
   /// @param is_ground  per point: 1 ground, 0 not
-  NetworkFrame(std::span<const Point> points, std::span<const std::uint8_t> is_ground, const NetworkInputSpec& spec)
+  NetworkFrame(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
+               const NetworkInputSpec& spec)
       : ground_(points, is_ground, spec.max_range_m), sensor_height_m_(spec.sensor_height_m) {}
 
   /// True if no ground was seen: then the frame is not known.
@@ -34,8 +35,8 @@ class NetworkFrame {
   double sensor_height_m_;
 };
 
-/// The points that a network takes in, in its frame: those within its range, heights and angles, thinned to its
-/// budget, in an order that looks random, so that the first of any region are spread over it.
+/// The points that a network takes in, in its frame: those within its range, heights and angles, thinned to
+/// its budget, in an order that looks random, so that the first of any region are spread over it.
 /// @param points  finite
 std::vector<Point> network_points(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
                                   const NetworkFrame& frame, const NetworkInputSpec& spec);

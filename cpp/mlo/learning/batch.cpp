@@ -6,7 +6,8 @@
 
 namespace mlo {
 
-std::vector<Groups> group(const PointRows& points, const PointRows& centers, const SetAbstractionSpec& layer) {
+std::vector<Groups> group(const PointRows& points, const PointRows& centers,
+                          const SetAbstractionSpec& layer) {
   std::vector<Groups> groups;
   for (const ScaleSpec& scale : layer.scales) {
     groups.push_back(query_balls(points, centers,

@@ -21,7 +21,8 @@ struct LayerGroups {
 struct BatchExample {
   NetworkInput input;
   std::vector<TargetBox> boxes;
-  /// Of the first layer, where it needs no features, so that it can be prepared while the step before is computed.
+  /// Of the first layer, where it needs no features, so that it can be prepared while the step before is
+  /// computed.
   LayerGroups first_layer;
 };
 

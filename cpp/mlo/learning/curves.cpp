@@ -16,7 +16,7 @@ struct Term {
 constexpr std::array kTerms{Term{"classes", &LossTerms::classes}, Term{"boxes", &LossTerms::boxes},
                             Term{"angles", &LossTerms::angles},   Term{"corners", &LossTerms::corners},
                             Term{"shifts", &LossTerms::shifts},   Term{"positives", &LossTerms::positives}};
-constexpr std::size_t kLossTerms = 5;                       // of them: all but the positives
+constexpr std::size_t kLossTerms = 5;                     // of them: all but the positives
 constexpr std::size_t kFixedColumns = 2 + kTerms.size();  // step and learning rate before them
 
 }  // namespace
@@ -57,7 +57,8 @@ std::string curves_svg(std::span<const TrainingRow> rows, std::span<const Object
 
 Tensor to_tensor(std::span<const TrainingRow> rows) {
   const std::size_t classes = rows.empty() ? 0 : rows.front().ap.size();
-  Tensor tensor{{static_cast<std::int64_t>(rows.size()), static_cast<std::int64_t>(kFixedColumns + classes)}, {}};
+  Tensor tensor{{static_cast<std::int64_t>(rows.size()), static_cast<std::int64_t>(kFixedColumns + classes)},
+                {}};
   for (const TrainingRow& row : rows) {
     tensor.values.push_back(static_cast<float>(row.step));
     tensor.values.push_back(static_cast<float>(row.learning_rate));

@@ -51,7 +51,8 @@ TorchTensor tensor_of_rows(const Rows& rows) {
 
 BatchTargets targets_of(const TorchOutput& output, std::span<const BatchExample> batch,
                         const NetworkArchitecture& architecture) {
-  std::vector<TorchTensor> class_index, centerness, codes, angle_bin, angle_residual, boxes, on_object, shifts;
+  std::vector<TorchTensor> class_index, centerness, codes, angle_bin, angle_residual, boxes, on_object,
+      shifts;
   for (std::size_t e = 0; e < batch.size(); ++e) {
     const CandidateTargets one =
         assign_targets(output.origins[e], output.candidates[e], batch[e].boxes, architecture);
@@ -79,7 +80,8 @@ TorchTensor class_loss(const TorchOutput& output, const BatchTargets& targets, d
   const TorchTensor is_object = targets.class_index.ge(0);
   const TorchTensor one_hot = torch::one_hot(targets.class_index.clamp_min(0), classes).to(torch::kFloat32);
   const TorchTensor labels = one_hot * (targets.centerness * is_object).unsqueeze(1);
-  const TorchTensor counts = targets.class_index.ne(CandidateTargets::kIgnored).to(torch::kFloat32).unsqueeze(1);
+  const TorchTensor counts =
+      targets.class_index.ne(CandidateTargets::kIgnored).to(torch::kFloat32).unsqueeze(1);
   const TorchTensor loss =
       torch::binary_cross_entropy_with_logits(output.class_logits, labels, {}, {}, at::Reduction::None);
   return (loss * counts).sum() / std::max(positives, 1.0);
@@ -87,15 +89,22 @@ TorchTensor class_loss(const TorchOutput& output, const BatchTargets& targets, d
 
 // Corners of boxes (center, size, yaw) as rows of 24 numbers.
 TorchTensor corners_of(const TorchTensor& boxes) {
-  const TorchTensor signs = torch::tensor({{1.F, 1.F, 1.F}, {1.F, -1.F, 1.F}, {-1.F, -1.F, 1.F}, {-1.F, 1.F, 1.F},
-                                      {1.F, 1.F, -1.F}, {1.F, -1.F, -1.F}, {-1.F, -1.F, -1.F}, {-1.F, 1.F, -1.F}});
+  const TorchTensor signs = torch::tensor({{1.F, 1.F, 1.F},
+                                           {1.F, -1.F, 1.F},
+                                           {-1.F, -1.F, 1.F},
+                                           {-1.F, 1.F, 1.F},
+                                           {1.F, 1.F, -1.F},
+                                           {1.F, -1.F, -1.F},
+                                           {-1.F, -1.F, -1.F},
+                                           {-1.F, 1.F, -1.F}});
   const TorchTensor local = 0.5 * signs.unsqueeze(0) * boxes.slice(1, 3, 6).unsqueeze(1);
   const TorchTensor yaw = boxes.slice(1, 6, 7);
   const TorchTensor c = yaw.cos();
   const TorchTensor s = yaw.sin();
   const TorchTensor x = local.select(2, 0);
   const TorchTensor y = local.select(2, 1);
-  return torch::stack({c * x - s * y, s * x + c * y, local.select(2, 2)}, 2) + boxes.slice(1, 0, 3).unsqueeze(1);
+  return torch::stack({c * x - s * y, s * x + c * y, local.select(2, 2)}, 2) +
+         boxes.slice(1, 0, 3).unsqueeze(1);
 }
 
 /// Of the positives: what the codes say.
@@ -105,14 +114,16 @@ struct DecodedPositives {
   TorchTensor boxes;     ///< center, size, yaw in the true bin
 };
 
-DecodedPositives decode(const TorchTensor& codes, const TorchTensor& candidates, const TorchTensor& class_index, const TorchTensor& bin,
+DecodedPositives decode(const TorchTensor& codes, const TorchTensor& candidates,
+                        const TorchTensor& class_index, const TorchTensor& bin,
                         const NetworkArchitecture& architecture) {
   const BoxCodeSpec& spec = architecture.box_code;
   TorchTensor means = torch::empty({static_cast<std::int64_t>(architecture.mean_sizes_lwh_m.size()), 3});
   TorchTensor scales = torch::ones_like(means);
   for (std::size_t k = 0; k < architecture.mean_sizes_lwh_m.size(); ++k) {
     const Eigen::Vector3d& mean = architecture.mean_sizes_lwh_m[k];
-    const Eigen::Vector3f scale = Eigen::Vector3d(mean.head<2>().norm(), mean.head<2>().norm(), mean.z()).cast<float>();
+    const Eigen::Vector3f scale =
+        Eigen::Vector3d(mean.head<2>().norm(), mean.head<2>().norm(), mean.z()).cast<float>();
     for (int axis = 0; axis < 3; ++axis) {
       means[static_cast<std::int64_t>(k)][axis] = static_cast<float>(mean[axis]);
       if (spec.center_in_sizes) scales[static_cast<std::int64_t>(k)][axis] = scale[axis];
@@ -121,9 +132,9 @@ DecodedPositives decode(const TorchTensor& codes, const TorchTensor& candidates,
   DecodedPositives decoded;
   decoded.codes = codes.slice(1, 0, 6);
   const TorchTensor center = candidates + codes.slice(1, 0, 3) * scales.index_select(0, class_index);
-  const TorchTensor size = spec.log_size
-                          ? means.index_select(0, class_index) * codes.slice(1, 3, 6).clamp(-3.0, 3.0).exp()
-                          : (2.0 * codes.slice(1, 3, 6)).clamp_min(0.05);
+  const TorchTensor size =
+      spec.log_size ? means.index_select(0, class_index) * codes.slice(1, 3, 6).clamp(-3.0, 3.0).exp()
+                    : (2.0 * codes.slice(1, 3, 6)).clamp_min(0.05);
   decoded.residual = codes.slice(1, 6 + spec.angle_bins).gather(1, bin.unsqueeze(1)).squeeze(1);
   const double bin_rad = 2.0 * M_PI / spec.angle_bins;
   const TorchTensor yaw = spec.first_angle_rad + bin_rad * (bin.to(torch::kFloat32) + 0.5 * decoded.residual);
@@ -154,7 +165,8 @@ struct LossTensors {
   TorchTensor total() const { return classes + boxes + angles + corners + shifts; }
 };
 
-LossTensors loss_of(const TorchOutput& output, const BatchTargets& targets, const NetworkArchitecture& architecture) {
+LossTensors loss_of(const TorchOutput& output, const BatchTargets& targets,
+                    const NetworkArchitecture& architecture) {
   LossTensors loss;
   const TorchTensor positive = targets.class_index.ge(0).nonzero().squeeze(1);
   loss.positives = static_cast<double>(positive.size(0));
@@ -178,7 +190,8 @@ LossTensors loss_of(const TorchOutput& output, const BatchTargets& targets, cons
 
 mlo::Tensor to_file(const TorchTensor& tensor) {
   const TorchTensor contiguous = tensor.detach().contiguous();
-  mlo::Tensor stored{contiguous.sizes().vec(), std::vector<float>(static_cast<std::size_t>(contiguous.numel()))};
+  mlo::Tensor stored{contiguous.sizes().vec(),
+                     std::vector<float>(static_cast<std::size_t>(contiguous.numel()))};
   std::copy_n(contiguous.data_ptr<float>(), contiguous.numel(), stored.values.begin());
   return stored;
 }
@@ -287,7 +300,8 @@ TensorFile Learner::state() const {
   TensorFile file = weights();
   file.metadata[kStepsKey] = std::to_string(parts_->steps);
   for (const auto& [name, tensor] : parts_->first_moment) file.tensors[kFirstMoment + name] = to_file(tensor);
-  for (const auto& [name, tensor] : parts_->second_moment) file.tensors[kSecondMoment + name] = to_file(tensor);
+  for (const auto& [name, tensor] : parts_->second_moment)
+    file.tensors[kSecondMoment + name] = to_file(tensor);
   return file;
 }
 
@@ -300,7 +314,8 @@ void Learner::begin_with(const TensorFile& weights) {
 void Learner::restore(const TensorFile& state) {
   const torch::NoGradGuard no_gradient;
   const auto steps = state.metadata.find(kStepsKey);
-  if (steps == state.metadata.end()) throw InputError("the saved state does not say how many steps it has had");
+  if (steps == state.metadata.end())
+    throw InputError("the saved state does not say how many steps it has had");
   begin_with(state);
   for (auto& [name, tensor] : parts_->first_moment) from_file(state, kFirstMoment + name, tensor);
   for (auto& [name, tensor] : parts_->second_moment) from_file(state, kSecondMoment + name, tensor);

@@ -12,11 +12,11 @@ namespace mlo {
 
 /// The parts of the loss (3DSSD, section 3.4), each as it enters the sum.
 struct LossTerms {
-  double classes = 0.0;  ///< cross-entropy with centre-ness as label, over the number of positives
-  double boxes = 0.0;    ///< smooth L1 of centre and size
-  double angles = 0.0;   ///< cross-entropy of the bin, smooth L1 within it
-  double corners = 0.0;  ///< distance of the eight corners
-  double shifts = 0.0;   ///< smooth L1 of the candidates' shifts
+  double classes = 0.0;    ///< cross-entropy with centre-ness as label, over the number of positives
+  double boxes = 0.0;      ///< smooth L1 of centre and size
+  double angles = 0.0;     ///< cross-entropy of the bin, smooth L1 within it
+  double corners = 0.0;    ///< distance of the eight corners
+  double shifts = 0.0;     ///< smooth L1 of the candidates' shifts
   double positives = 0.0;  ///< candidates that lie in an object
 
   double total() const { return classes + boxes + angles + corners + shifts; }
@@ -40,7 +40,8 @@ class Learner {
   /// One step on a batch; what the loss was before it. A batch whose loss is not finite moves no parameter.
   LossTerms step(std::span<const BatchExample> batch, double learning_rate);
 
-  /// What the network answers as it is, normalised by its running statistics: the same as Network, up to rounding.
+  /// What the network answers as it is, normalised by its running statistics: the same as Network, up to
+  /// rounding.
   NetworkOutput operator()(const BatchExample& example) const;
 
   /// Takes the weights of a file of the same architecture instead of random ones.

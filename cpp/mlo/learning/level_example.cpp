@@ -24,7 +24,8 @@ std::vector<TargetBox> target_boxes(const TrainingExample& example, const Networ
   for (const TrainingBox& box : example.boxes) {
     const auto known = std::ranges::find(architecture.classes, box.object_class);
     const bool counts = box.demanded && known != architecture.classes.end();
-    targets.push_back({box.box, counts ? static_cast<int>(known - architecture.classes.begin()) : TargetBox::kIgnored});
+    targets.push_back(
+        {box.box, counts ? static_cast<int>(known - architecture.classes.begin()) : TargetBox::kIgnored});
   }
   return targets;
 }

@@ -10,8 +10,8 @@
 
 namespace mlo {
 
-/// An example as a network sees it: ground found, points thinned, points and boxes in the network's frame. Nothing
-/// if no ground was found, or nothing is left.
+/// An example as a network sees it: ground found, points thinned, points and boxes in the network's frame.
+/// Nothing if no ground was found, or nothing is left.
 std::optional<TrainingExample> level(TrainingExample example, const NetworkInputSpec& spec);
 
 /// What the network should find in an example.

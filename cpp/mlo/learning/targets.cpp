@@ -13,19 +13,20 @@ constexpr double kOnObject_m = 0.1;
 constexpr double kIgnored_m = 0.3;
 
 const TargetBox* box_around(const Eigen::Vector3d& point, std::span<const TargetBox> boxes, double margin_m) {
-  const auto found =
-      std::ranges::find_if(boxes, [&](const TargetBox& target) { return target.box.contains(point, margin_m); });
+  const auto found = std::ranges::find_if(
+      boxes, [&](const TargetBox& target) { return target.box.contains(point, margin_m); });
   return found == boxes.end() ? nullptr : &*found;
 }
 
-void set_class(CandidateTargets& targets, Eigen::Index i, const Eigen::Vector3d& candidate, const TargetBox& target,
-               const NetworkArchitecture& architecture) {
+void set_class(CandidateTargets& targets, Eigen::Index i, const Eigen::Vector3d& candidate,
+               const TargetBox& target, const NetworkArchitecture& architecture) {
   const auto at = static_cast<std::size_t>(i);
   targets.class_index[at] = target.class_index;
   targets.centerness[at] = static_cast<float>(centerness(target.box, candidate));
-  targets.codes.row(i) = encode_box(target.box, candidate, static_cast<std::size_t>(target.class_index), architecture)
-                             .transpose()
-                             .cast<float>();
+  targets.codes.row(i) =
+      encode_box(target.box, candidate, static_cast<std::size_t>(target.class_index), architecture)
+          .transpose()
+          .cast<float>();
   const AngleCode angle = encode_angle(target.box.yaw_rad, architecture.box_code);
   targets.angle_bin[at] = angle.bin;
   targets.angle_residual[at] = static_cast<float>(angle.residual);

@@ -36,12 +36,12 @@ struct CandidateTargets {
   PointRows shifts;
 };
 
-/// Centre-ness of a point in a box (3DSSD, Eq. 3 and 4, after FCOS): cube root of the product over the axes of the
-/// distance to the nearer face over that to the farther one; 1 in the middle, 0 on a face and outside.
+/// Centre-ness of a point in a box (3DSSD, Eq. 3 and 4, after FCOS): cube root of the product over the axes
+/// of the distance to the nearer face over that to the farther one; 1 in the middle, 0 on a face and outside.
 double centerness(const Box3d& box, const Eigen::Vector3d& point);
 
-/// A candidate that lies in a true box is of its class; one that lies just outside is ignored, and so is what lies in
-/// a box that is ignored.
+/// A candidate that lies in a true box is of its class; one that lies just outside is ignored, and so is what
+/// lies in a box that is ignored.
 /// @param origins     the points that the candidates began as, one row each
 /// @param candidates  the same after their shifts
 CandidateTargets assign_targets(const PointRows& origins, const PointRows& candidates,

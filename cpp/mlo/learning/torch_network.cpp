@@ -17,7 +17,8 @@ using torch::autograd::variable_list;
 
 // Of running statistics: batches are small, and a street has other statistics than a car park.
 constexpr double kMomentum = 0.01;
-constexpr double kFirstConfidence = 0.05;  // of an untrained network, so that its many false answers cost little
+constexpr double kFirstConfidence =
+    0.05;  // of an untrained network, so that its many false answers cost little
 
 // Rows of a batch's groups, with the indices of all examples in one.
 struct BatchGroups {
@@ -27,8 +28,8 @@ struct BatchGroups {
 
 // points[member] - centers[group] for each member of each group.
 struct RelativeRows : torch::autograd::Function<RelativeRows> {
-  static TorchTensor forward(AutogradContext* context, const TorchTensor& points, const TorchTensor& centers, const TorchTensor& begins,
-                        const TorchTensor& members) {
+  static TorchTensor forward(AutogradContext* context, const TorchTensor& points, const TorchTensor& centers,
+                             const TorchTensor& begins, const TorchTensor& members) {
     context->save_for_backward({begins, members});
     context->saved_data["points"] = points.size(0);
     const std::int64_t channels = points.size(1);
@@ -107,7 +108,8 @@ struct GroupMaximum : torch::autograd::Function<GroupMaximum> {
     float* row = of_rows.data_ptr<float>();
     for (std::int64_t i = 0; i < gradient.size(0); ++i) {
       for (std::int64_t c = 0; c < channels; ++c, ++which, ++value) {
-        if (*which >= 0) row[*which * channels + c] = *value;  // after ReLU, what is not above 0 has no gradient
+        if (*which >= 0)
+          row[*which * channels + c] = *value;  // after ReLU, what is not above 0 has no gradient
       }
     }
     return {of_rows, TorchTensor()};
@@ -145,7 +147,8 @@ BatchGroups join_groups(const std::vector<std::vector<Groups>>& by_example, std:
     for (std::size_t i = 1; i < groups.begins.size(); ++i) {
       begins.push_back(before + static_cast<std::int32_t>(groups.begins[i]));
     }
-    for (const std::uint32_t member : groups.members) members.push_back(offset + static_cast<std::int32_t>(member));
+    for (const std::uint32_t member : groups.members)
+      members.push_back(offset + static_cast<std::int32_t>(member));
     offset += static_cast<std::int32_t>(points[e].rows());
   }
   return {torch::tensor(begins, torch::kInt32), torch::tensor(members, torch::kInt32)};
@@ -153,14 +156,16 @@ BatchGroups join_groups(const std::vector<std::vector<Groups>>& by_example, std:
 
 PointRows selected(const PointRows& points, const std::vector<std::uint32_t>& indices) {
   PointRows result(static_cast<Eigen::Index>(indices.size()), 3);
-  for (std::size_t i = 0; i < indices.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = points.row(indices[i]);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    result.row(static_cast<Eigen::Index>(i)) = points.row(indices[i]);
   return result;
 }
 
 TorchTensor random_normal(std::int64_t rows, std::int64_t columns, double deviation, Random& random) {
   TorchTensor tensor = torch::empty({rows, columns});
   float* value = tensor.data_ptr<float>();
-  for (std::int64_t i = 0; i < rows * columns; ++i) value[i] = static_cast<float>(deviation * random.normal());
+  for (std::int64_t i = 0; i < rows * columns; ++i)
+    value[i] = static_cast<float>(deviation * random.normal());
   return tensor;
 }
 
@@ -175,7 +180,8 @@ TorchNetwork::TorchNetwork(const NetworkArchitecture& architecture, std::uint64_
     for (const SequenceSpec& scale : layer.scales) add_sequence(scale, random);
     add_sequence(layer.aggregate, random);
   }
-  for (const SequenceSpec* spec : {&sequences_.vote, &sequences_.shared, &sequences_.classes, &sequences_.boxes}) {
+  for (const SequenceSpec* spec :
+       {&sequences_.vote, &sequences_.shared, &sequences_.classes, &sequences_.boxes}) {
     add_sequence(*spec, random);
   }
   const std::string last = weight_name(sequences_.classes, sequences_.classes.channels.size() - 2);
@@ -211,11 +217,13 @@ TorchTensor TorchNetwork::normalise(const TorchTensor& rows, const std::string& 
                            kMomentum, architecture_.batch_norm_eps, false);
 }
 
-TorchTensor TorchNetwork::apply(const SequenceSpec& spec, TorchTensor rows, std::size_t first, bool training) {
+TorchTensor TorchNetwork::apply(const SequenceSpec& spec, TorchTensor rows, std::size_t first,
+                                bool training) {
   for (std::size_t k = first; k + 1 < spec.channels.size(); ++k) {
     const std::string weight = weight_name(spec, k);
     rows = torch::matmul(rows, parameters_.at(weight + ".weight").t());
-    if (const auto bias = parameters_.find(weight + ".bias"); bias != parameters_.end()) rows = rows + bias->second;
+    if (const auto bias = parameters_.find(weight + ".bias"); bias != parameters_.end())
+      rows = rows + bias->second;
     if (spec.plain_end && k + 2 == spec.channels.size()) return rows;
     rows = normalise(rows, norm_name(spec, k), training);
     torch::relu_(rows);
@@ -225,8 +233,8 @@ TorchTensor TorchNetwork::apply(const SequenceSpec& spec, TorchTensor rows, std:
 
 // The first layer of a group is computed once per point and once per centre, as in Network.
 TorchTensor TorchNetwork::describe(const Cloud& cloud, const std::vector<PointRows>& centers,
-                              const std::vector<std::vector<Groups>>& groups, const NetworkSequences::Layer& layer,
-                              bool training) {
+                                   const std::vector<std::vector<Groups>>& groups,
+                                   const NetworkSequences::Layer& layer, bool training) {
   const TorchTensor rows = torch::cat({joined(cloud.points), cloud.features}, 1);
   const TorchTensor center_rows = joined(centers);
   std::vector<TorchTensor> scales;
@@ -235,8 +243,8 @@ TorchTensor TorchNetwork::describe(const Cloud& cloud, const std::vector<PointRo
     const TorchTensor weight = parameters_.at(weight_name(spec, 0) + ".weight");
     const BatchGroups joined_groups = join_groups(groups, s, cloud.points);
     TorchTensor hidden = RelativeRows::apply(torch::matmul(rows, weight.t()),
-                                        torch::matmul(center_rows, weight.slice(1, 0, 3).t()), joined_groups.begins,
-                                        joined_groups.members);
+                                             torch::matmul(center_rows, weight.slice(1, 0, 3).t()),
+                                             joined_groups.begins, joined_groups.members);
     hidden = normalise(hidden, norm_name(spec, 0), training);
     torch::relu_(hidden);
     scales.push_back(GroupMaximum::apply(apply(spec, hidden, 1, training), joined_groups.begins));
@@ -292,13 +300,14 @@ TorchOutput TorchNetwork::operator()(std::span<const BatchExample> batch, bool t
   Eigen::Index row = 0;
   for (std::size_t e = 0; e < batch.size(); ++e) {
     const PointRows& origins = output.origins[e];
-    output.candidates.emplace_back(
-        origins + limited_shifts(rows_of(output.shifts, row, origins.rows()), architecture_.vote.max_shift_m));
+    output.candidates.emplace_back(origins + limited_shifts(rows_of(output.shifts, row, origins.rows()),
+                                                            architecture_.vote.max_shift_m));
     groups.push_back(group(cloud.points[e], output.candidates.back(), architecture_.candidate_layer));
     row += origins.rows();
   }
-  const TorchTensor described = apply(
-      sequences_.shared, describe(cloud, output.candidates, groups, sequences_.candidates, training), 0, training);
+  const TorchTensor described =
+      apply(sequences_.shared, describe(cloud, output.candidates, groups, sequences_.candidates, training), 0,
+            training);
   output.class_logits = apply(sequences_.classes, described, 0, training);
   output.box_codes = apply(sequences_.boxes, described, 0, training);
   return output;

@@ -44,7 +44,8 @@ struct Selection {
   std::vector<std::pair<std::size_t, std::size_t>> scans;  ///< source, index in it
 };
 
-Selection select(const std::vector<std::filesystem::path>& folders, std::size_t every, std::size_t min_points) {
+Selection select(const std::vector<std::filesystem::path>& folders, std::size_t every,
+                 std::size_t min_points) {
   Selection selection;
   for (const std::filesystem::path& folder : folders) {
     selection.sources.push_back(open_examples(folder, {.open = {}, .min_points = min_points}));
@@ -92,7 +93,8 @@ double learning_rate_at(long step, long steps, const TrainingConfig& config) {
     return config.learning_rate * (kFirstRate + (1.0 - kFirstRate) * done / config.warm_up);
   }
   const double share = (done - config.warm_up) / (1.0 - config.warm_up);
-  return config.learning_rate * (kLastRate + (1.0 - kLastRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
+  return config.learning_rate *
+         (kLastRate + (1.0 - kLastRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
 }
 
 void add(LossTerms& sum, const LossTerms& one, double weight) {
@@ -120,7 +122,8 @@ struct Describer {
 };
 
 // What has to be the same for a training to go on with the state of another.
-std::string owner_of(TrainingConfig config, const TrainingOptions& options, const NetworkArchitecture& architecture) {
+std::string owner_of(TrainingConfig config, const TrainingOptions& options,
+                     const NetworkArchitecture& architecture) {
   Describer describer;
   config.fields(describer);
   std::string text = describer.text + to_json(architecture);
@@ -144,7 +147,8 @@ class Training {
 
   TrainingReport run(const std::function<bool()>& is_stopped) {
     load_all();
-    const std::size_t per_epoch = std::max<std::size_t>(1, examples_.size() / static_cast<std::size_t>(config_.batch));
+    const std::size_t per_epoch =
+        std::max<std::size_t>(1, examples_.size() / static_cast<std::size_t>(config_.batch));
     steps_ = static_cast<long>(per_epoch) * config_.epochs;
     if (options_.resume) restore();
     step_through(is_stopped);
@@ -175,7 +179,8 @@ class Training {
   void step_through(const std::function<bool()>& is_stopped) {
     LossTerms sum;
     long summed = 0;
-    std::future<std::vector<BatchExample>> next = std::async(std::launch::async, [this, s = step_] { return batch_of(s); });
+    std::future<std::vector<BatchExample>> next =
+        std::async(std::launch::async, [this, s = step_] { return batch_of(s); });
     while (step_ < steps_) {
       const std::vector<BatchExample> batch = next.get();
       next = std::async(std::launch::async, [this, s = step_ + 1] { return batch_of(s); });
@@ -183,11 +188,14 @@ class Training {
       add(sum, learner_.step(batch, rate), 1.0);
       ++summed;
       ++step_;
-      on_progress_({TrainingProgress::Phase::training, static_cast<std::size_t>(step_), static_cast<std::size_t>(steps_), {}});
+      on_progress_({TrainingProgress::Phase::training,
+                    static_cast<std::size_t>(step_),
+                    static_cast<std::size_t>(steps_),
+                    {}});
       const bool is_last = step_ == steps_;
       if (!is_last && is_stopped()) {
-        // Not a line of the curves: a training that goes on must give the same as one that was never stopped. It goes
-        // on from the last line.
+        // Not a line of the curves: a training that goes on must give the same as one that was never stopped.
+        // It goes on from the last line.
         report_.interrupted = true;
         return;
       }
@@ -202,7 +210,10 @@ class Training {
 
   void judge_and_save(TrainingRow row) {
     if (!validation_.empty()) {
-      on_progress_({TrainingProgress::Phase::judging, static_cast<std::size_t>(step_), static_cast<std::size_t>(steps_), {}});
+      on_progress_({TrainingProgress::Phase::judging,
+                    static_cast<std::size_t>(step_),
+                    static_cast<std::size_t>(steps_),
+                    {}});
       row.ap = judge(Network(learner_.weights()), validation_);
     }
     report_.rows.push_back(row);
@@ -212,7 +223,8 @@ class Training {
     write_safetensors(options_.out / "training_state.safetensors", state);
     write_file_atomically(options_.out / "curves.csv", curves_csv(report_.rows, architecture_.classes));
     write_file_atomically(options_.out / "curves.svg", curves_svg(report_.rows, architecture_.classes));
-    on_progress_({TrainingProgress::Phase::training, static_cast<std::size_t>(step_), static_cast<std::size_t>(steps_), row});
+    on_progress_({TrainingProgress::Phase::training, static_cast<std::size_t>(step_),
+                  static_cast<std::size_t>(steps_), row});
   }
 
   void restore() {
@@ -221,9 +233,10 @@ class Training {
     const TensorFile state = read_safetensors(file);
     const auto owner = state.metadata.find(kOwnerKey);
     if (owner == state.metadata.end() || owner->second != owner_of(config_, options_, architecture_)) {
-      throw InputError(fmt::format("{}: it is of a training with other folders or settings; give the same as then, or "
-                                   "leave out --resume",
-                                   file.string()));
+      throw InputError(
+          fmt::format("{}: it is of a training with other folders or settings; give the same as then, or "
+                      "leave out --resume",
+                      file.string()));
     }
     learner_.restore(state);
     const auto curves = state.tensors.find(kCurvesTensor);
@@ -243,7 +256,8 @@ class Training {
       const std::vector<std::size_t> order =
           shuffled_order(examples_.size(), mix(mix(seed, kOrderStream), epoch));
       const TrainingExample& example = examples_[order[number % examples_.size()]];
-      TrainingExample changed = augment(example, bank_, config_.augmentation, mix(mix(seed, kAugmentationStream), number));
+      TrainingExample changed =
+          augment(example, bank_, config_.augmentation, mix(mix(seed, kAugmentationStream), number));
       shuffle_points(changed.points, number);
       batch[k] = make_batch_example(changed.points, target_boxes(changed, architecture_), architecture_);
     });
@@ -272,8 +286,8 @@ AugmentationConfig all_round_augmentation() {
   return augmentation;
 }
 
-TrainingReport train(const TrainingConfig& config, const TrainingOptions& options, const ProgressCall& on_progress,
-                     const std::function<bool()>& is_stopped) {
+TrainingReport train(const TrainingConfig& config, const TrainingOptions& options,
+                     const ProgressCall& on_progress, const std::function<bool()>& is_stopped) {
   std::filesystem::create_directories(options.out);
   return Training(config, options, on_progress).run(is_stopped);
 }

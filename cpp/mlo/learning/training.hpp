@@ -38,7 +38,8 @@ struct TrainingConfig {
     visit("warm_up", warm_up, between(0.0, 0.9),
           "share of the steps in which their length grows, before it falls along a cosine");
     visit("every", every, between(1, 1000), "only each so many-th scan is used: neighbours are much alike");
-    visit("min_points", min_points, between(1, 1000), "objects with fewer returns are neither demanded nor wrong");
+    visit("min_points", min_points, between(1, 1000),
+          "objects with fewer returns are neither demanded nor wrong");
     visit("seed", seed, between(0, 1000000), "of all that is random");
     visit("torch_threads", torch_threads, between(1, 64),
           "threads of LibTorch; another number may round differently, and so give other weights");
@@ -51,8 +52,8 @@ struct TrainingOptions {
   std::vector<std::filesystem::path> folders;     ///< to learn from: anything that open_examples() takes
   std::vector<std::filesystem::path> validation;  ///< to judge by: may be none
   std::filesystem::path out;
-  bool resume = false;          ///< go on with the state in `out`, if there is one
-  int validate_every = 500;     ///< steps between two judgements, each of which saves the state
+  bool resume = false;               ///< go on with the state in `out`, if there is one
+  int validate_every = 500;          ///< steps between two judgements, each of which saves the state
   std::size_t max_validation = 200;  ///< scans to judge by, spread over all
   /// What begins the network: a weights file, or nothing for small_architecture() with random weights.
   std::optional<std::filesystem::path> start;
@@ -85,8 +86,8 @@ struct TrainingProgress {
 };
 
 /// Trains 3DSSD. Writes weights.safetensors, curves.csv, curves.svg and, for going on after an interruption,
-/// training_state.safetensors to the folder; all of them whole or not at all. The same folders, options and seed give
-/// the same bytes, resumed or not.
+/// training_state.safetensors to the folder; all of them whole or not at all. The same folders, options and
+/// seed give the same bytes, resumed or not.
 /// @param is_stopped  asked after each step: true ends the training with its state saved
 /// @throws InputError if there is nothing to learn from, or the state in the folder is of another training
 TrainingReport train(const TrainingConfig& config, const TrainingOptions& options,

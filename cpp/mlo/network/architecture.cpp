@@ -15,8 +15,8 @@ using nlohmann::json;
 constexpr const char* kPlace = "architecture of the network";
 
 [[noreturn]] void refuse(const std::string& fault) {
-  throw InputError(fmt::format("{}: {}; take the weights from 'mlo train' or scripts/convert_3dssd_checkpoint.py",
-                               kPlace, fault));
+  throw InputError(fmt::format(
+      "{}: {}; take the weights from 'mlo train' or scripts/convert_3dssd_checkpoint.py", kPlace, fault));
 }
 
 void require(bool holds, const std::string& fault) {
@@ -111,9 +111,9 @@ void check_scales(const SetAbstractionSpec& layer, const char* where) {
 }
 
 void check(const NetworkArchitecture& architecture) {
-  require(!architecture.classes.empty() &&
-              architecture.classes.size() == architecture.mean_sizes_lwh_m.size(),
-          "classes and mean_sizes_lwh_m are not as many");
+  require(
+      !architecture.classes.empty() && architecture.classes.size() == architecture.mean_sizes_lwh_m.size(),
+      "classes and mean_sizes_lwh_m are not as many");
   for (const Eigen::Vector3d& size : architecture.mean_sizes_lwh_m) {
     require(size.minCoeff() > 0.0, "a mean size is not positive");
   }
@@ -132,8 +132,8 @@ void check(const NetworkArchitecture& architecture) {
   require(architecture.vote.candidates > 0 && architecture.box_code.angle_bins > 0,
           "it has no candidates or no angle bins");
   const HeadSpec& head = architecture.head;
-  require(are_positive(architecture.vote.channels) && are_positive(head.shared) && are_positive(head.classes) &&
-              are_positive(head.boxes),
+  require(are_positive(architecture.vote.channels) && are_positive(head.shared) &&
+              are_positive(head.classes) && are_positive(head.boxes),
           "a layer of vote or head has no channels");
 }
 
@@ -250,25 +250,22 @@ NetworkArchitecture small_architecture() {
   NetworkArchitecture small;
   small.classes = {ObjectClass::car, ObjectClass::van, ObjectClass::truck, ObjectClass::pedestrian,
                    ObjectClass::cyclist};
-  small.mean_sizes_lwh_m = {{4.2, 1.75, 1.5}, {5.0, 1.9, 2.1}, {8.5, 2.5, 3.2}, {0.7, 0.6, 1.7}, {1.8, 0.6, 1.7}};
-  small.input = {.max_points = 6000,
-                 .max_range_m = 50.0,
-                 .min_height_m = -0.3,
-                 .max_height_m = 3.0,
-                 .rings = 64};
-  small.layers = {
-      {.samples = {{.method = distance, .count = 1024}},
-       .scales = {{.radius_m = 0.6, .neighbours = 12, .channels = {16, 24}},
-                  {.radius_m = 1.2, .neighbours = 16, .channels = {16, 24}}}},
-      {.samples = {{.method = feature, .count = 256}, {.method = distance, .count = 192}},
-       .scales = {{.radius_m = 1.2, .neighbours = 16, .channels = {32, 48}},
-                  {.radius_m = 2.4, .neighbours = 20, .channels = {32, 48}}},
-       .aggregate = 64},
-      {.samples = {{.method = feature, .count = 192, .from = 0, .to = 256},
-                   {.method = distance, .count = 128, .from = 256, .to = -1}},
-       .scales = {{.radius_m = 2.4, .neighbours = 16, .channels = {48, 64}},
-                  {.radius_m = 4.8, .neighbours = 20, .channels = {48, 64}}},
-       .aggregate = 96}};
+  small.mean_sizes_lwh_m = {
+      {4.2, 1.75, 1.5}, {5.0, 1.9, 2.1}, {8.5, 2.5, 3.2}, {0.7, 0.6, 1.7}, {1.8, 0.6, 1.7}};
+  small.input = {
+      .max_points = 6000, .max_range_m = 50.0, .min_height_m = -0.3, .max_height_m = 3.0, .rings = 64};
+  small.layers = {{.samples = {{.method = distance, .count = 1024}},
+                   .scales = {{.radius_m = 0.6, .neighbours = 12, .channels = {16, 24}},
+                              {.radius_m = 1.2, .neighbours = 16, .channels = {16, 24}}}},
+                  {.samples = {{.method = feature, .count = 256}, {.method = distance, .count = 192}},
+                   .scales = {{.radius_m = 1.2, .neighbours = 16, .channels = {32, 48}},
+                              {.radius_m = 2.4, .neighbours = 20, .channels = {32, 48}}},
+                   .aggregate = 64},
+                  {.samples = {{.method = feature, .count = 192, .from = 0, .to = 256},
+                               {.method = distance, .count = 128, .from = 256, .to = -1}},
+                   .scales = {{.radius_m = 2.4, .neighbours = 16, .channels = {48, 64}},
+                              {.radius_m = 4.8, .neighbours = 20, .channels = {48, 64}}},
+                   .aggregate = 96}};
   small.vote = {.candidates = 192, .channels = {64}, .max_shift_m = {4.0, 4.0, 2.0}};
   small.candidate_layer = {.scales = {{.radius_m = 3.0, .neighbours = 16, .channels = {96, 128}},
                                       {.radius_m = 6.0, .neighbours = 20, .channels = {96, 128}}}};

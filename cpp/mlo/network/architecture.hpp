@@ -12,23 +12,23 @@
 
 namespace mlo {
 
-/// What a 3DSSD network (Yang et al., CVPR 2020) is made of, and what it expects of its input. It is part of the
-/// file of its weights, as JSON, so that published networks of full size and small ones of our own run by the same
-/// code.
+/// What a 3DSSD network (Yang et al., CVPR 2020) is made of, and what it expects of its input. It is part of
+/// the file of its weights, as JSON, so that published networks of full size and small ones of our own run by
+/// the same code.
 
 /// What each input point tells besides its position.
 enum class PointFeature { intensity, height };
 
 struct NetworkInputSpec {
-  int max_points = 8192;                ///< the scan is thinned to at most so many
+  int max_points = 8192;  ///< the scan is thinned to at most so many
   std::vector<PointFeature> features = {PointFeature::height};
-  double max_range_m = 70.0;            ///< points farther away, seen from above, are left out
-  double min_height_m = -0.5;           ///< above the ground: what is lower is left out
+  double max_range_m = 70.0;   ///< points farther away, seen from above, are left out
+  double min_height_m = -0.5;  ///< above the ground: what is lower is left out
   double max_height_m = 3.5;
-  double sensor_height_m = 0.0;         ///< z of the input is the height above the ground minus this
-  bool keeps_ground = false;            ///< whether points on the ground are part of the input
-  double half_angle_deg = 180.0;        ///< azimuths within this of straight ahead; 180: all round
-  int rings = 0;                        ///< of the lidar that it was trained with; 0: unknown
+  double sensor_height_m = 0.0;   ///< z of the input is the height above the ground minus this
+  bool keeps_ground = false;      ///< whether points on the ground are part of the input
+  double half_angle_deg = 180.0;  ///< azimuths within this of straight ahead; 180: all round
+  int rings = 0;                  ///< of the lidar that it was trained with; 0: unknown
 };
 
 /// Farthest point sampling of some of a layer's input points.
@@ -47,7 +47,7 @@ struct SamplingSpec {
 struct ScaleSpec {
   double inner_radius_m = 0.0;
   double radius_m = 0.0;
-  int neighbours = 0;         ///< at most so many: the first in the order of the points
+  int neighbours = 0;              ///< at most so many: the first in the order of the points
   std::vector<int> channels = {};  ///< outputs of each layer
 };
 
@@ -71,8 +71,9 @@ struct HeadSpec {
 
 /// How a box is told: center, size, angle in bins.
 struct BoxCodeSpec {
-  bool center_in_sizes = true;  ///< offset in diagonals (x, y) and heights (z) of the class's mean size, else in m
-  bool log_size = true;         ///< logarithm of the size over the class's mean, else half of each side in m
+  bool center_in_sizes =
+      true;              ///< offset in diagonals (x, y) and heights (z) of the class's mean size, else in m
+  bool log_size = true;  ///< logarithm of the size over the class's mean, else half of each side in m
   int angle_bins = 12;
   double first_angle_rad = 0.0;  ///< middle of the first bin
 

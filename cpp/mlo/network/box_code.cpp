@@ -35,8 +35,8 @@ double decode_angle(const AngleCode& angle, const BoxCodeSpec& code) {
                         2.0 * std::numbers::pi);
 }
 
-Eigen::Matrix<double, 6, 1> encode_box(const Box3d& box, const Eigen::Vector3d& candidate, std::size_t class_index,
-                                       const NetworkArchitecture& architecture) {
+Eigen::Matrix<double, 6, 1> encode_box(const Box3d& box, const Eigen::Vector3d& candidate,
+                                       std::size_t class_index, const NetworkArchitecture& architecture) {
   const Eigen::Vector3d& mean = architecture.mean_sizes_lwh_m[class_index];
   Eigen::Matrix<double, 6, 1> code;
   code.head<3>() = (box.center_lidar_m - candidate).cwiseQuotient(center_scale(mean, architecture.box_code));
@@ -59,7 +59,8 @@ Box3d decode_box(const Eigen::RowVectorXf& code, const Eigen::Vector3d& candidat
                        : Eigen::Vector3d((2.0 * size).max(kMinSide_m));
   Eigen::Index bin = 0;
   code.segment(6, spec.angle_bins).maxCoeff(&bin);
-  box.yaw_rad = decode_angle({static_cast<int>(bin), static_cast<double>(code[6 + spec.angle_bins + bin])}, spec);
+  box.yaw_rad =
+      decode_angle({static_cast<int>(bin), static_cast<double>(code[6 + spec.angle_bins + bin])}, spec);
   return box;
 }
 

@@ -17,15 +17,17 @@ struct AngleCode {
 AngleCode encode_angle(double yaw_rad, const BoxCodeSpec& code);
 double decode_angle(const AngleCode& angle, const BoxCodeSpec& code);
 
-/// Offset of the centre and the size of a box of a class, seen from a candidate: the first six numbers of its code.
-Eigen::Matrix<double, 6, 1> encode_box(const Box3d& box, const Eigen::Vector3d& candidate, std::size_t class_index,
-                                       const NetworkArchitecture& architecture);
-/// The box that a code (BoxCodeSpec::size() numbers: offset, size, likelihood of each bin, residual in each) tells.
+/// Offset of the centre and the size of a box of a class, seen from a candidate: the first six numbers of its
+/// code.
+Eigen::Matrix<double, 6, 1> encode_box(const Box3d& box, const Eigen::Vector3d& candidate,
+                                       std::size_t class_index, const NetworkArchitecture& architecture);
+/// The box that a code (BoxCodeSpec::size() numbers: offset, size, likelihood of each bin, residual in each)
+/// tells.
 Box3d decode_box(const Eigen::RowVectorXf& code, const Eigen::Vector3d& candidate, std::size_t class_index,
                  const NetworkArchitecture& architecture);
 
-/// The boxes of all candidates whose confidence, the logistic function of the largest class logit, is at least so
-/// large; in the frame of the input and the order of the candidates.
+/// The boxes of all candidates whose confidence, the logistic function of the largest class logit, is at
+/// least so large; in the frame of the input and the order of the candidates.
 std::vector<Detection> decode_boxes(const NetworkOutput& output, const NetworkArchitecture& architecture,
                                     double min_confidence);
 

@@ -23,7 +23,8 @@ const std::vector<float>& values_of(const TensorFile& file, const std::string& n
     throw InputError(fmt::format("the weights lack the tensor '{}' that their architecture needs", name));
   }
   if (tensor->second.shape != shape) {
-    throw InputError(fmt::format("the weights do not fit their architecture: tensor '{}' has another shape", name));
+    throw InputError(
+        fmt::format("the weights do not fit their architecture: tensor '{}' has another shape", name));
   }
   if (!std::ranges::all_of(tensor->second.values, [](float value) { return std::isfinite(value); })) {
     throw InputError(fmt::format("the weights' tensor '{}' holds values that are not finite", name));
@@ -80,8 +81,9 @@ RowMatrix run_layers(const DenseSequence& sequence, const RowMatrix& rows) {
   return result;
 }
 
-// The first layer of a group sees a point relative to its centre: W_x (p - c) + W_f f + b. What belongs to the point
-// is the same in each group that the point is in, so that it is computed once: W_x p + W_f f + b, minus W_x c.
+// The first layer of a group sees a point relative to its centre: W_x (p - c) + W_f f + b. What belongs to
+// the point is the same in each group that the point is in, so that it is computed once: W_x p + W_f f + b,
+// minus W_x c.
 struct FirstLayer {
   RowMatrix of_points;
   RowMatrix of_centers;
@@ -96,7 +98,8 @@ FirstLayer first_layer(const DenseLayer& layer, const PointRows& points, const R
   return {run_layers({linear}, rows), run_layers({positions}, centers)};
 }
 
-// Maximum over each group of what the layers make of its members; 0, the least there can be, for an empty group.
+// Maximum over each group of what the layers make of its members; 0, the least there can be, for an empty
+// group.
 RowMatrix pool_groups(const Groups& groups, const FirstLayer& first, const DenseSequence& sequence) {
   const Eigen::Index outputs = sequence.back().weight.rows();
   RowMatrix pooled = RowMatrix::Zero(static_cast<Eigen::Index>(groups.size()), outputs);
@@ -108,9 +111,9 @@ RowMatrix pool_groups(const Groups& groups, const FirstLayer& first, const Dense
     Eigen::Index row = 0;
     for (std::size_t i = begin; i < end; ++i) {
       for (std::uint32_t m = groups.begins[i]; m < groups.begins[i + 1]; ++m, ++row) {
-        rows.row(row) = (first.of_points.row(groups.members[m]) -
-                         first.of_centers.row(static_cast<Eigen::Index>(i)))
-                            .cwiseMax(0.0F);
+        rows.row(row) =
+            (first.of_points.row(groups.members[m]) - first.of_centers.row(static_cast<Eigen::Index>(i)))
+                .cwiseMax(0.0F);
       }
     }
     for (std::size_t k = 1; k < sequence.size(); ++k) rows = sequence[k](rows);
@@ -223,8 +226,8 @@ NetworkOutput Network::operator()(const NetworkInput& input) const {
   const RowMatrix shifts = run_layers(vote_, features.topRows(count));
   NetworkOutput output;
   output.candidates = points.topRows(count) + limited_shifts(shifts, architecture_.vote.max_shift_m);
-  const RowMatrix described =
-      run_layers(shared_, describe(points, features, output.candidates, architecture_.candidate_layer, candidates_));
+  const RowMatrix described = run_layers(
+      shared_, describe(points, features, output.candidates, architecture_.candidate_layer, candidates_));
   output.class_logits = run_layers(classes_, described);
   output.box_codes = run_layers(boxes_, described);
   return output;

@@ -21,7 +21,8 @@ struct NetworkOutput {
   RowMatrix box_codes;  ///< BoxCodeSpec
 };
 
-/// Layers that are applied one after the other: y = W x + b, then max(y, 0). Batch normalisation is part of W and b.
+/// Layers that are applied one after the other: y = W x + b, then max(y, 0). Batch normalisation is part of W
+/// and b.
 struct DenseLayer {
   RowMatrix weight;  ///< outputs x inputs
   Eigen::RowVectorXf bias;
@@ -31,11 +32,12 @@ struct DenseLayer {
 };
 using DenseSequence = std::vector<DenseLayer>;
 
-/// Inference of 3DSSD on the CPU. Immutable; runs on the caller's TBB arena; the same output for any number of
-/// threads.
+/// Inference of 3DSSD on the CPU. Immutable; runs on the caller's TBB arena; the same output for any number
+/// of threads.
 class Network {
  public:
-  /// @throws InputError if a tensor is missing, has another shape than the architecture says, or is not finite
+  /// @throws InputError if a tensor is missing, has another shape than the architecture says, or is not
+  /// finite
   explicit Network(const TensorFile& file);
 
   const NetworkArchitecture& architecture() const { return architecture_; }

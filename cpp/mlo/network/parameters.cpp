@@ -14,11 +14,13 @@ std::vector<int> joined(int inputs, const std::vector<int>& channels) {
 }
 
 // A group is told by relative positions and features.
-NetworkSequences::Layer layer_sequences(const std::string& name, int features, const SetAbstractionSpec& spec) {
+NetworkSequences::Layer layer_sequences(const std::string& name, int features,
+                                        const SetAbstractionSpec& spec) {
   NetworkSequences::Layer layer;
   int sum = 0;
   for (std::size_t s = 0; s < spec.scales.size(); ++s) {
-    layer.scales.push_back({fmt::format("{}.mlps.{}", name, s), joined(3 + features, spec.scales[s].channels)});
+    layer.scales.push_back(
+        {fmt::format("{}.mlps.{}", name, s), joined(3 + features, spec.scales[s].channels)});
     sum += spec.scales[s].channels.back();
   }
   layer.aggregate.name = name + ".out_aggregation";
@@ -45,10 +47,11 @@ NetworkSequences sequences_of(const NetworkArchitecture& architecture) {
   all.candidates = layer_sequences("point_head.SA_module", features, architecture.candidate_layer);
   all.vote = ending_in("point_head.vote_layers", features, architecture.vote.channels, 3);
   const HeadSpec& head = architecture.head;
-  all.shared = {"point_head.shared_fc_layer", joined(channels_out(architecture.candidate_layer), head.shared)};
+  all.shared = {"point_head.shared_fc_layer",
+                joined(channels_out(architecture.candidate_layer), head.shared)};
   const int shared = all.shared.channels.back();
-  all.classes = ending_in("point_head.cls_layers", shared, head.classes,
-                          static_cast<int>(architecture.classes.size()));
+  all.classes =
+      ending_in("point_head.cls_layers", shared, head.classes, static_cast<int>(architecture.classes.size()));
   all.boxes = ending_in("point_head.reg_layers", shared, head.boxes, architecture.box_code.size());
   return all;
 }

@@ -54,7 +54,8 @@ std::size_t find_neighbors(const Eigen::Matrix<float, Eigen::Dynamic, 3>& points
 
 }  // namespace
 
-std::vector<std::uint32_t> farthest_point_sampling(const Eigen::Ref<const RowMatrix>& rows, std::size_t count) {
+std::vector<std::uint32_t> farthest_point_sampling(const Eigen::Ref<const RowMatrix>& rows,
+                                                   std::size_t count) {
   const std::size_t wanted = std::min(static_cast<std::size_t>(rows.rows()), count);
   std::vector<std::uint32_t> chosen;
   chosen.reserve(wanted);

@@ -19,8 +19,8 @@ std::shared_ptr<const Network> load_network(const DetectionConfig& config) {
   const std::filesystem::path file = config.network.weights;
   const std::string place = file.empty() ? "the weights that come with mlo" : file.string();
   try {
-    return std::make_shared<const Network>(
-        file.empty() ? parse_safetensors(embedded_network_weights(), place) : read_safetensors(file));
+    return std::make_shared<const Network>(file.empty() ? parse_safetensors(embedded_network_weights(), place)
+                                                        : read_safetensors(file));
   } catch (const InputError& e) {
     const std::string what = e.what();
     throw InputError(what.starts_with(place) ? what : fmt::format("{}: {}", place, what));
