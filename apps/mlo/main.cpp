@@ -56,6 +56,7 @@ void add_global_options(CLI::App& program) {
 void add_missing_train(CLI::App& program) {
   auto* command =
       program.add_subcommand("train", "Train the network of the detector 3dssd (not in this build)");
+  command->footer("Examples:\n  mlo train --help    # in a build with -DMLO_WITH_TORCH=ON");
   command->allow_extras();
   command->callback([] {
     throw mlo::InputError(
