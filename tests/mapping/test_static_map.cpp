@@ -12,69 +12,44 @@
 namespace mlo {
 namespace {
 
-FeaturePoint at(float x, float y, float z) {
-  FeaturePoint point;
-  point.p_lidar = {x, y, z};
-  point.sweep_fraction = 0.5F;
-  return point;
+MapPoint at(float x, float y, float z, MapLabel label = MapLabel::surface) {
+  return {.p_map = {x, y, z}, .intensity = 0.0F, .label = label};
 }
 
-TEST(StaticMap, LabelsPointsAndLeavesObjectsOut) {
-  Percept seen;
-  seen.edge.candidates = {at(1.0F, 0.1F, 0.1F)};
-  seen.ground.candidates = {at(2.0F, 0.1F, 0.1F)};
-  seen.surface.candidates = {at(3.0F, 0.1F, 0.1F)};
-  seen.surface.features = {at(4.0F, 0.1F, 0.1F)};
-  Point object_point;
-  object_point.p_lidar = {5.0F, 0.0F, 0.0F};
-  seen.objects.push_back({{}, {object_point}, {at(6.0F, 0.1F, 0.1F)}});
+TEST(StaticMap, KeepsPointsAsTheyAre) {
+  MapPoint point = at(1.0F, 0.1F, 0.1F, MapLabel::edge);
+  point.intensity = 0.75F;
   StaticMap map({});
-  map.insert(seen, SweepMotion::none(), SE3());
-  std::vector<std::pair<float, MapLabel>> found;  // the order is the map's own
-  for (const MapPoint& point : map.points()) found.emplace_back(point.p_map.x(), point.label);
-  EXPECT_THAT(
-      found, testing::UnorderedElementsAre(std::pair(1.0F, MapLabel::edge), std::pair(2.0F, MapLabel::ground),
-                                           std::pair(3.0F, MapLabel::surface)));
+  map.insert({&point, 1}, 0);
+  ASSERT_EQ(map.points().size(), 1U);
+  EXPECT_EQ(map.points()[0].p_map, point.p_map);
+  EXPECT_EQ(map.points()[0].intensity, 0.75F);
+  EXPECT_EQ(map.points()[0].label, MapLabel::edge);
 }
 
 TEST(StaticMap, KeepsOnePointPerVoxelOverAllScans) {
-  Percept seen;
+  std::vector<MapPoint> seen;
   for (int i = 0; i < 1000; ++i) {
     const auto k = static_cast<float>(i);
-    seen.surface.candidates.push_back(
+    seen.push_back(
         at(std::fmod(0.137F * k, 4.0F), std::fmod(0.071F * k, 3.0F), std::fmod(0.037F * k, 2.0F)));
   }
   StaticMap map({.voxel_m = 0.5});
-  map.insert(seen, SweepMotion::none(), SE3());
+  map.insert(seen, 0);
   const std::size_t once = map.points().size();
-  map.insert(seen, SweepMotion::none(), SE3());
+  map.insert(seen, 0);
   EXPECT_EQ(map.points().size(), once);
   std::set<std::tuple<int, int, int>> voxels;
-  for (const FeaturePoint& p : seen.surface.candidates) {
-    const VoxelKey key = voxel_key(p.p_lidar, 2.0F);
+  for (const MapPoint& p : seen) {
+    const VoxelKey key = voxel_key(p.p_map, 2.0F);
     voxels.insert({key.x, key.y, key.z});
   }
   EXPECT_EQ(once, voxels.size());
 }
 
-TEST(StaticMap, PlacesPointsByTheirTimeAndThePose) {
-  Percept seen;
-  FeaturePoint early = at(10.0F, 0.0F, 0.0F);
-  early.sweep_fraction = 0.0F;
-  early.intensity = 0.75F;
-  seen.edge.candidates = {early};
+TEST(StaticMap, NothingAddsNothing) {
   StaticMap map({});
-  const SweepMotion motion(SE3(Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0}), 0.5);
-  map.insert(seen, motion, SE3(Eigen::Quaterniond::Identity(), {0.0, 7.0, 0.0}));
-  ASSERT_EQ(map.points().size(), 1U);
-  // At its start the sweep was half a metre behind where it was at its middle.
-  EXPECT_LT((map.points()[0].p_map - Eigen::Vector3f(9.5F, 7.0F, 0.0F)).norm(), 1e-5F);
-  EXPECT_EQ(map.points()[0].intensity, 0.75F);
-}
-
-TEST(StaticMap, AnEmptyPerceptAddsNothing) {
-  StaticMap map({});
-  map.insert(Percept{}, SweepMotion::none(), SE3());
+  map.insert({}, 0);
   EXPECT_TRUE(map.points().empty());
 }
 
@@ -95,10 +70,9 @@ std::vector<Point> wall_ahead(float distance_m) {
 }
 
 TEST(StaticMap, WhatLaterScansSeeThroughIsLeftOut) {
-  Percept seen;
-  seen.surface.candidates = {at(10.0F, 0.1F, 0.1F), at(20.0F, 0.1F, 0.1F)};
+  std::vector<MapPoint> seen{at(10.0F, 0.1F, 0.1F), at(20.0F, 0.1F, 0.1F)};
   StaticMap map({.hit_votes = 1.0, .max_votes = 3.0});
-  map.insert(seen, SweepMotion::none(), SE3());
+  map.insert(seen, 0);
   map.observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), SE3()));
   ASSERT_EQ(map.points().size(), 1U);
   EXPECT_EQ(map.points()[0].p_map.x(), 20.0F);
@@ -117,11 +91,10 @@ TEST(StaticMap, WhatStandsWhereTheSkyIsIsLeftOutButNotTheGround) {
   std::erase_if(low_wall, [](const Point& point) {
     return std::abs(point.p_lidar.y()) < 3.0F && point.p_lidar.z() > 0.0F;
   });
-  Percept seen;
-  seen.surface.candidates = {at(10.0F, 0.1F, 0.7F)};
-  seen.ground.candidates = {at(9.0F, 0.1F, 0.6F)};
+  std::vector<MapPoint> seen{at(10.0F, 0.1F, 0.7F)};
+  seen.push_back(at(9.0F, 0.1F, 0.6F, MapLabel::ground));
   StaticMap map({});
-  map.insert(seen, SweepMotion::none(), SE3());
+  map.insert(seen, 0);
   const ScanView view(low_wall, SweepMotion::none(), SE3());
   const ScanView hit(wall_ahead(10.0F), SweepMotion::none(), SE3());
   for (const ScanView* each : {&view, &view, &hit, &view, &view}) map.observe(*each);
@@ -133,13 +106,11 @@ TEST(StaticMap, WhatStandsWhereTheSkyIsIsLeftOutButNotTheGround) {
 }
 
 TEST(StaticMap, TakesBackWhatOneScanBroughtWithinABox) {
-  Percept early;
-  early.surface.candidates = {at(10.0F, 0.1F, 0.1F), at(30.0F, 0.1F, 0.1F)};
-  Percept late;
-  late.surface.candidates = {at(10.0F, 0.5F, 0.1F)};
+  std::vector<MapPoint> early{at(10.0F, 0.1F, 0.1F), at(30.0F, 0.1F, 0.1F)};
+  std::vector<MapPoint> late{at(10.0F, 0.5F, 0.1F)};
   StaticMap map({.moving_margin_m = 0.5});
-  map.insert(early, SweepMotion::none(), SE3(), {}, {}, 4);
-  map.insert(late, SweepMotion::none(), SE3(), {}, {}, 5);
+  map.insert(early, 4);
+  map.insert(late, 5);
   const SE3 T_map_object(Eigen::Quaterniond::Identity(), {11.0, 0.0, 0.0});
   const Eigen::Vector3d size(2.0, 2.0, 2.0);
   const auto x_of_points = [&] {
@@ -161,22 +132,24 @@ TEST(StaticMap, TakesBackWhatOneScanBroughtWithinABox) {
   ArchiveReader reader(bytes.bytes(), "archive");
   StaticMap::archive(map, reader);
   EXPECT_EQ(map.points().size(), 2U);
-  map.insert(early, SweepMotion::none(), SE3(), {}, {}, 6);
+  map.insert(early, 6);
   EXPECT_EQ(map.points().size(), 3U) << "a later scan fills its place anew";
 }
 
 TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
-  Percept seen;
+  std::vector<MapPoint> seen;
   for (int i = 0; i < 500; ++i) {
-    seen.surface.candidates.push_back(at(0.37F * static_cast<float>(i), 0.1F, 0.1F));
-    seen.edge.candidates.push_back(at(5.0F, 0.29F * static_cast<float>(i), 0.1F));
+    seen.push_back(at(0.37F * static_cast<float>(i), 0.1F, 0.1F));
+    seen.push_back(at(5.0F, 0.29F * static_cast<float>(i), 0.1F, MapLabel::edge));
   }
   StaticMap kept({.memory_radius_m = 1e6});
   StaticMap spooled({.memory_radius_m = 50.0});
   for (const float robot_m : {0.0F, 500.0F, 1000.0F, 0.0F, 20.0F}) {
     const SE3 T_map_lidar(Eigen::Quaterniond::Identity(), {static_cast<double>(robot_m), 0.0, 0.0});
+    std::vector<MapPoint> placed = seen;
+    for (MapPoint& point : placed) point.p_map.x() += robot_m;
     for (StaticMap* map : {&kept, &spooled}) {
-      map->insert(seen, SweepMotion::none(), T_map_lidar);
+      map->insert(placed, 0);
       map->observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), T_map_lidar));
       map->spool_far(T_map_lidar.translation().cast<float>());
     }
@@ -193,13 +166,13 @@ TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
 }
 
 TEST(StaticMap, WhatWasHardlySeenGoesWithItsSurroundings) {
-  Percept seen;
+  std::vector<MapPoint> seen;
   for (int i = 0; i < 3; ++i)
-    seen.surface.candidates.push_back(at(10.1F, 0.1F + 0.25F * static_cast<float>(i), 0.1F));
-  seen.surface.candidates.push_back(at(10.1F, 0.1F, 0.9F));  // above the rays, in the same cubic metre
-  seen.surface.candidates.push_back(at(10.1F, 0.1F, 2.9F));  // elsewhere
+    seen.push_back(at(10.1F, 0.1F + 0.25F * static_cast<float>(i), 0.1F));
+  seen.push_back(at(10.1F, 0.1F, 0.9F));  // above the rays, in the same cubic metre
+  seen.push_back(at(10.1F, 0.1F, 2.9F));  // elsewhere
   StaticMap map({});
-  map.insert(seen, SweepMotion::none(), SE3());
+  map.insert(seen, 0);
   std::vector<Point> scan = wall_ahead(20.0F);
   std::erase_if(scan, [](const Point& point) { return point.p_lidar.z() > 0.06F * point.p_lidar.x(); });
   map.observe(ScanView(scan, SweepMotion::none(), SE3()));
@@ -208,39 +181,50 @@ TEST(StaticMap, WhatWasHardlySeenGoesWithItsSurroundings) {
 }
 
 TEST(StaticMap, WhatLiesAboutABoxThatMovesIsNotAdded) {
-  Percept seen;
-  seen.surface.candidates = {at(10.0F, 0.0F, 0.0F), at(12.3F, 0.0F, 0.0F), at(13.0F, 0.0F, 0.0F)};
+  std::vector<MapPoint> seen{at(10.0F, 0.0F, 0.0F), at(12.3F, 0.0F, 0.0F), at(13.0F, 0.0F, 0.0F)};
   const Box3d car{.center_lidar_m = {10.0, 0.0, 0.0}, .size_lwh_m = {4.0, 2.0, 1.5}, .yaw_rad = 0.0};
   StaticMap map({.moving_margin_m = 0.5});
-  map.insert(seen, SweepMotion::none(), SE3(Eigen::Quaterniond::Identity(), {100.0, 0.0, 0.0}), {&car, 1});
+  for (MapPoint& point : seen) point.p_map.x() += 100.0F;
+  const SE3 T_map_lidar(Eigen::Quaterniond::Identity(), {100.0, 0.0, 0.0});
+  map.insert(seen, 0, {.T_map_lidar = T_map_lidar, .moving = {car}});
   ASSERT_EQ(map.points().size(), 1U);
   EXPECT_EQ(map.points()[0].p_map.x(), 113.0F);
 }
 
+TEST(StaticMap, OfColumnsOnlyTheGroundIsAdded) {
+  const std::vector<MapPoint> seen{at(10.0F, 0.1F, 0.1F), at(10.0F, 0.1F, -1.6F, MapLabel::ground),
+                                   at(15.0F, 0.1F, 0.1F)};
+  ColumnSet columns(0.5);
+  columns.insert(columns.key_of(seen[0].p_map));
+  StaticMap map({});
+  map.insert(seen, 0, {.T_map_lidar = SE3(), .columns = columns});
+  std::vector<std::pair<float, MapLabel>> found;  // the order is the map's own
+  for (const MapPoint& point : map.points()) found.emplace_back(point.p_map.x(), point.label);
+  EXPECT_THAT(found, testing::UnorderedElementsAre(std::pair(10.0F, MapLabel::ground),
+                                                   std::pair(15.0F, MapLabel::surface)));
+}
+
 TEST(StaticMap, WhatIsOutOfReachIsNotVotedOn) {
-  Percept seen;
-  seen.surface.candidates = {at(10.0F, 0.1F, 0.1F)};
+  std::vector<MapPoint> seen{at(10.0F, 0.1F, 0.1F)};
   StaticMap map({}, {.range_m = 5.0});
-  map.insert(seen, SweepMotion::none(), SE3());
+  map.insert(seen, 0);
   for (int i = 0; i < 5; ++i) map.observe(ScanView(wall_ahead(20.0F), SweepMotion::none(), SE3()));
   EXPECT_EQ(map.points().size(), 1U);
 }
 
 TEST(StaticMap, LooksFromWhereTheLidarWasAtThatTimeOfTheSweep) {
   // The lidar turned by a tenth of a radian in the sweep; the point was seen at its end, straight ahead.
-  Percept seen;
-  FeaturePoint late = at(10.0F, 0.0F, 0.1F);
-  late.sweep_fraction = 1.0F;
-  seen.surface.candidates = {late};
+  const SweepMotion motion(SE3(so3_exp({0.0, 0.0, 0.1}), Eigen::Vector3d::Zero()), 0.5);
+  MapPoint late = at(0.0F, 0.0F, 0.0F);
+  late.p_map = motion.undistort({10.0, 0.0, 0.1}, 1.0).cast<float>();
   std::vector<Point> scan = wall_ahead(20.0F);
   for (Point& point : scan) {
     point.sweep_fraction = 1.0F;
     // Where the point lies at the reference time something near hides it.
     if (point.p_lidar.y() > 0.5F) point.p_lidar *= 0.25F;
   }
-  const SweepMotion motion(SE3(so3_exp({0.0, 0.0, 0.1}), Eigen::Vector3d::Zero()), 0.5);
   StaticMap map({});
-  map.insert(seen, motion, SE3());
+  map.insert({&late, 1}, 0);
   map.observe(ScanView(scan, motion, SE3()));
   EXPECT_TRUE(map.points().empty());
 }

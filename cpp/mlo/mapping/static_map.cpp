@@ -41,48 +41,64 @@ float distance_m(const VoxelKey& tile, const Eigen::Vector3f& p_map) {
 StaticMap::StaticMap(const StaticMapConfig& config, const FreeSpaceConfig& free_space)
     : config_(config), free_space_(free_space), inverse_voxel_(static_cast<float>(1.0 / config.voxel_m)) {}
 
-void StaticMap::insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
-                       std::span<const Box3d> moving, const ColumnSet& columns, std::size_t frame) {
-  const Insertion scan{motion, T_map_lidar, moving, static_cast<std::uint32_t>(frame)};
-  insert(percept.edge.candidates, MapLabel::edge, scan, columns);
-  insert(percept.ground.candidates, MapLabel::ground, scan, {});
-  insert(percept.surface.candidates, MapLabel::surface, scan, columns);
+void StaticMap::insert(std::span<const MapPoint> points, std::size_t frame, const LeftOut& left_out) {
+  const PointsOfTiles by_tile = by_tiles(points, left_out);
+  std::vector<std::uint32_t> places;
+  for (const auto& [place, chosen] : by_tile) places.push_back(place);
+  parallel_for_each_index(places.size(), [&](std::size_t i) {
+    insert(tiles_[places[i]], points, by_tile.at(places[i]), static_cast<std::uint32_t>(frame));
+  });
 }
 
-void StaticMap::insert(std::span<const FeaturePoint> features, MapLabel label, const Insertion& scan,
-                       const ColumnSet& columns) {
-  Tile* tile = nullptr;
+bool StaticMap::is_left_out(const MapPoint& point, const LeftOut& left_out, const SE3& T_lidar_map) const {
+  if (point.label != MapLabel::ground && left_out.columns.contains(point.p_map)) return true;
+  if (left_out.moving.empty()) return false;
+  const Eigen::Vector3d p_lidar = T_lidar_map * point.p_map.cast<double>();
+  return std::ranges::any_of(left_out.moving, [&](const Box3d& box) {
+    return box.contains(p_lidar, config_.moving_margin_m);
+  });
+}
+
+StaticMap::PointsOfTiles StaticMap::by_tiles(std::span<const MapPoint> points, const LeftOut& left_out) {
+  const SE3 T_lidar_map = left_out.T_map_lidar.inverse();
+  PointsOfTiles by_tile;
+  std::vector<std::uint32_t>* chosen = nullptr;
+  VoxelKey last_tile;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (is_left_out(points[i], left_out, T_lidar_map)) continue;
+    // Neighbours in a scan are neighbours in the map.
+    const VoxelKey tile = tile_key(points[i].p_map);
+    if (chosen == nullptr || tile != last_tile) chosen = &by_tile[tile_at(tile)];
+    last_tile = tile;
+    chosen->push_back(i);
+  }
+  return by_tile;
+}
+
+void StaticMap::insert(Tile& tile, std::span<const MapPoint> points, std::span<const std::uint32_t> chosen,
+                       std::uint32_t frame) const {
   VoxelBlock* block = nullptr;
   VoxelKey last_block;
-  for (const FeaturePoint& feature : features) {
-    const Eigen::Vector3d p_lidar =
-        scan.motion.undistort(feature.p_lidar.cast<double>(), static_cast<double>(feature.sweep_fraction));
-    const auto is_near = [&](const Box3d& box) { return box.contains(p_lidar, config_.moving_margin_m); };
-    if (std::any_of(scan.moving.begin(), scan.moving.end(), is_near)) continue;
-    const Eigen::Vector3f p_map = (scan.T_map_lidar * p_lidar).cast<float>();
-    if (columns.contains(p_map)) continue;
-    // Neighbours in a scan are neighbours in the map.
-    const VoxelKey voxel = voxel_key(p_map, inverse_voxel_);
-    const bool same_tile = tile != nullptr && tile->key == tile_key(p_map);
-    if (!same_tile) tile = &tile_at(p_map);
-    if (!same_tile || VoxelBlock::key_of(voxel) != last_block) {
+  for (const std::uint32_t i : chosen) {
+    const VoxelKey voxel = voxel_key(points[i].p_map, inverse_voxel_);
+    if (block == nullptr || VoxelBlock::key_of(voxel) != last_block) {
       last_block = VoxelBlock::key_of(voxel);
-      block = &tile->index[last_block];
+      block = &tile.index[last_block];
     }
     std::uint32_t& place = block->at(voxel);
     if (place != VoxelBlock::kNone) continue;
-    place = static_cast<std::uint32_t>(tile->entries.size());
-    tile->entries.push_back({.point = {p_map, feature.intensity, label}, .frame = scan.frame});
+    place = static_cast<std::uint32_t>(tile.entries.size());
+    tile.entries.push_back({.point = points[i], .frame = frame});
   }
 }
 
-StaticMap::Tile& StaticMap::tile_at(const Eigen::Vector3f& p_map) {
-  const VoxelKey key = tile_key(p_map);
+// Returns its place in tiles_. It is in memory then.
+std::uint32_t StaticMap::tile_at(const VoxelKey& key) {
   const auto [found, is_new] = tile_index_.try_emplace(key, static_cast<std::uint32_t>(tiles_.size()));
   if (is_new) tiles_.emplace_back().key = key;
   Tile& tile = tiles_[found->second];
   if (tile.num_spooled > 0) fetch(tile);
-  return tile;
+  return found->second;
 }
 
 void StaticMap::fetch(Tile& tile) const {

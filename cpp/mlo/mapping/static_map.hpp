@@ -9,8 +9,8 @@
 #include <tsl/robin_map.h>
 
 #include "mlo/core/archive.hpp"
-#include "mlo/core/features.hpp"
-#include "mlo/core/sweep_motion.hpp"
+#include "mlo/core/box.hpp"
+#include "mlo/core/se3.hpp"
 #include "mlo/core/types.hpp"
 #include "mlo/core/voxel_grid.hpp"
 #include "mlo/mapping/column_set.hpp"
@@ -21,21 +21,22 @@
 
 namespace mlo {
 
+/// What of a scan is left out of the static map.
+struct LeftOut {
+  SE3 T_map_lidar;                ///< where it was seen from
+  std::vector<Box3d> moving = {};  ///< what moves, in the lidar frame: points in or near these boxes
+  ColumnSet columns = {};         ///< of things that move without a box: all but the ground in them
+};
+
 /// The long-term static map: environment points of all scans, one per voxel, without the points of objects
 /// and without what later scans looked through.
 class StaticMap {
  public:
   explicit StaticMap(const StaticMapConfig& config, const FreeSpaceConfig& free_space = {});
 
-  /// Adds the candidate sets of a scan.
-  /// @param motion       brings the points to the time of the pose
-  /// @param T_map_lidar  pose at the motion's reference time
-  /// @param moving       what moves, in the lidar frame at that time: points in or near these boxes are left
-  ///                     out
-  /// @param columns      of things that move without a box: edges and surfaces in them are left out, too
-  /// @param frame        of the scan
-  void insert(const Percept& percept, const SweepMotion& motion, const SE3& T_map_lidar,
-              std::span<const Box3d> moving = {}, const ColumnSet& columns = {}, std::size_t frame = 0);
+  /// Adds points of a scan, each where no point is yet. Of those that share a voxel the first stays.
+  /// @param frame  of the scan
+  void insert(std::span<const MapPoint> points, std::size_t frame, const LeftOut& left_out = {});
 
   /// Lets a scan vote on the points of the map: for those that it sees, against those that it sees through.
   void observe(const ScanView& view);
@@ -80,19 +81,16 @@ class StaticMap {
     std::size_t num_spooled = 0;  // entries there; 0: the tile is in memory
   };
 
-  /// What a scan brings, but for its points.
-  struct Insertion {
-    const SweepMotion& motion;
-    const SE3& T_map_lidar;
-    std::span<const Box3d> moving;
-    std::uint32_t frame;
-  };
-  void insert(std::span<const FeaturePoint> features, MapLabel label, const Insertion& scan,
-              const ColumnSet& columns);
+  /// Indices of a scan's points that are in one tile, by the tile's place in tiles_.
+  using PointsOfTiles = tsl::robin_map<std::uint32_t, std::vector<std::uint32_t>>;
+  bool is_left_out(const MapPoint& point, const LeftOut& left_out, const SE3& T_lidar_map) const;
+  PointsOfTiles by_tiles(std::span<const MapPoint> points, const LeftOut& left_out);
+  void insert(Tile& tile, std::span<const MapPoint> points, std::span<const std::uint32_t> chosen,
+              std::uint32_t frame) const;
   /// Points that were seen through in each block of space that has some.
   using Counts = tsl::robin_map<VoxelKey, int, VoxelKeyHash>;
   Counts count_seen_through() const;
-  Tile& tile_at(const Eigen::Vector3f& p_map);
+  std::uint32_t tile_at(const VoxelKey& key);
   void spool(Tile& tile);
   void fetch(Tile& tile) const;
   void make_index(Tile& tile) const;

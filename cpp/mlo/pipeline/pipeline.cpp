@@ -258,8 +258,7 @@ PoseEstimate Pipeline::refine_pose(const Percept& seen, const SE3& T_previous_cu
     clear_maps();
     const SweepMotion motion = SweepMotion::from_increment(guess.T_previous_current, timing);
     const PlacedCandidates in_map = place(*state_.unplaced, motion, state_.T_map_lidar);
-    insert_in_local_maps(*state_.unplaced, in_map, state_.T_map_lidar);
-    static_map_.insert(*state_.unplaced, motion, state_.T_map_lidar, {}, {}, state_.frame);
+    static_map_.insert(insert_in_local_maps(*state_.unplaced, in_map, state_.T_map_lidar), state_.frame);
     refined = refine(terms, guess, config);
   }
   return refined;
@@ -313,24 +312,23 @@ Pipeline::PlacedCandidates Pipeline::place(const Percept& seen, const SweepMotio
 
 // Returns the candidates that the static map may not have yet: those at places that the local maps did not
 // have, and some of the others in turn.
-Percept Pipeline::insert_in_local_maps(const Percept& seen, const PlacedCandidates& in_map,
-                                       const SE3& T_map_lidar) {
+std::vector<MapPoint> Pipeline::insert_in_local_maps(const Percept& seen, const PlacedCandidates& in_map,
+                                                     const SE3& T_map_lidar) {
   const bool separate = config_.mapping.local_map.separate_classes;
   const auto turns = static_cast<std::size_t>(config_.mapping.static_map.turns);
   LocalMaps& maps = local_maps_;
+  std::vector<MapPoint> unmapped;
   const auto insert = [&](const std::vector<Eigen::Vector3f>& points_map, const FeatureSet& set,
-                          LocalMap& own_map) {
+                          LocalMap& own_map, MapLabel label) {
     const std::vector<std::uint8_t> added = (separate ? own_map : maps.surface).insert(points_map);
-    FeatureSet unmapped;
     for (std::size_t i = 0; i < added.size(); ++i) {
-      if (added[i] != 0 || (i + state_.frame) % turns == 0) unmapped.candidates.push_back(set.candidates[i]);
+      if (added[i] == 0 && (i + state_.frame) % turns != 0) continue;
+      unmapped.push_back({points_map[i], set.candidates[i].intensity, label});
     }
-    return unmapped;
   };
-  Percept unmapped;
-  unmapped.edge = insert(in_map.edge, seen.edge, maps.edge);
-  unmapped.ground = insert(in_map.ground, seen.ground, maps.ground);
-  unmapped.surface = insert(in_map.surface, seen.surface, maps.surface);
+  insert(in_map.edge, seen.edge, maps.edge, MapLabel::edge);
+  insert(in_map.ground, seen.ground, maps.ground, MapLabel::ground);
+  insert(in_map.surface, seen.surface, maps.surface, MapLabel::surface);
   for (LocalMap* map : {&maps.ground, &maps.edge, &maps.surface}) {
     map->forget_beyond_radius(T_map_lidar.translation().cast<float>());
   }
@@ -367,13 +365,13 @@ std::vector<Box3d> Pipeline::follow_trails(const Scan& scan, const SE3& T_map_li
   return lost;
 }
 
-void Pipeline::update_static_map(const Scan& scan, const Percept& unmapped, const SweepMotion& motion,
-                                 const SE3& T_map_lidar, std::span<const TrackedObject> objects,
-                                 const ColumnSet& unknown_movers) {
-  std::vector<Box3d> moving = boxes_of_moving(objects);
+void Pipeline::update_static_map(const Scan& scan, std::span<const MapPoint> unmapped,
+                                 const SweepMotion& motion, const SE3& T_map_lidar,
+                                 std::span<const TrackedObject> objects, const ColumnSet& unknown_movers) {
+  LeftOut left_out{T_map_lidar, boxes_of_moving(objects), unknown_movers};
   const std::vector<Box3d> lost = follow_trails(scan, T_map_lidar, objects);
-  moving.insert(moving.end(), lost.begin(), lost.end());
-  static_map_.insert(unmapped, motion, T_map_lidar, moving, unknown_movers, scan.frame);
+  left_out.moving.insert(left_out.moving.end(), lost.begin(), lost.end());
+  static_map_.insert(unmapped, scan.frame, left_out);
   const auto is_turn = [&](int every) {
     return every > 0 && scan.frame % static_cast<std::size_t>(every) == 0;
   };
@@ -434,7 +432,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& 
   const bool grows_static_map = makes_map && result.localised();
   const PlacedCandidates in_map =
       grows_static_map || new_local_maps ? place(seen, motion, T_map_lidar) : PlacedCandidates{};
-  Percept unmapped;
+  std::vector<MapPoint> unmapped;
   FoundMovers unknown;
   parallel_invoke(
       [&] {

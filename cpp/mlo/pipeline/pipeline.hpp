@@ -116,10 +116,11 @@ class Pipeline {
   void clear_local_maps();
   bool local_maps_are_empty() const;
   static PlacedCandidates place(const Percept& seen, const SweepMotion& motion, const SE3& T_map_lidar);
-  Percept insert_in_local_maps(const Percept& seen, const PlacedCandidates& in_map, const SE3& T_map_lidar);
+  std::vector<MapPoint> insert_in_local_maps(const Percept& seen, const PlacedCandidates& in_map,
+                                             const SE3& T_map_lidar);
 
   FoundMovers find_unknown_movers(double stamp_s, const PlacedCandidates& in_map);
-  void update_static_map(const Scan& scan, const Percept& unmapped, const SweepMotion& motion,
+  void update_static_map(const Scan& scan, std::span<const MapPoint> unmapped, const SweepMotion& motion,
                          const SE3& T_map_lidar, std::span<const TrackedObject> objects,
                          const ColumnSet& unknown_movers);
   std::vector<Box3d> follow_trails(const Scan& scan, const SE3& T_map_lidar,
