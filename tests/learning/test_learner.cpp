@@ -43,7 +43,7 @@ TEST(Learner, LearnsAnExampleByHeart) {
   const std::vector<BatchExample> batch{field()};
   const LossTerms first = learner.step(batch, 0.005);
   LossTerms last;
-  for (int i = 0; i < 250; ++i) last = learner.step(batch, 0.005);
+  for (int i = 0; i < 250; ++i) last = learner.step(batch, 0.005 * (1.0 - i / 250.0));
   EXPECT_LT(last.total(), 0.25 * first.total());
   // Normalised by running statistics, as it is used, and by the code without LibTorch.
   for (int i = 0; i < 500; ++i) learner.step(batch, 1e-6);

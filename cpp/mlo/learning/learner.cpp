@@ -19,8 +19,11 @@ namespace {
 
 using TorchTensor = torch::Tensor;
 
-constexpr double kSmoothWithin = 1.0 / 9.0;  // beta of smooth L1: below, errors count by their square
-constexpr double kSmoothCorner_m = 1.0;
+// Where smooth L1 turns from the square to the absolute error. Overlaps of 70 % are lost by decimetres:
+// below, errors have to pull as larger ones do.
+constexpr double kSmoothWithin = 0.03;  // of codes, a sixth of a metre for a car's center
+constexpr double kSmoothCorner_m = 0.1;
+constexpr double kCornerWeight = 2.0;
 constexpr double kBeta1 = 0.9;  // of Adam
 constexpr double kBeta2 = 0.99;
 constexpr double kAdamEps = 1e-8;
@@ -181,7 +184,7 @@ LossTensors loss_of(const TorchOutput& output, const BatchTargets& targets,
   const TorchTensor bins = codes.slice(1, 6, 6 + architecture.box_code.angle_bins);
   loss.angles = per_positive * (torch::cross_entropy_loss(bins, bin, {}, at::Reduction::Sum) +
                                 smooth(decoded.residual, of_positives(targets.angle_residual)));
-  loss.corners = per_positive * corner_loss(decoded.boxes, of_positives(targets.boxes));
+  loss.corners = kCornerWeight * per_positive * corner_loss(decoded.boxes, of_positives(targets.boxes));
   const TorchTensor on_object = targets.is_on_object.nonzero().squeeze(1);
   loss.shifts = smooth(output.shifts.index_select(0, on_object), targets.shifts.index_select(0, on_object)) /
                 std::max(static_cast<double>(on_object.size(0)), 1.0);

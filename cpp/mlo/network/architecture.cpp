@@ -253,22 +253,22 @@ NetworkArchitecture small_architecture() {
   small.mean_sizes_lwh_m = {
       {4.2, 1.75, 1.5}, {5.0, 1.9, 2.1}, {8.5, 2.5, 3.2}, {0.7, 0.6, 1.7}, {1.8, 0.6, 1.7}};
   small.input = {
-      .max_points = 6000, .max_range_m = 50.0, .min_height_m = -0.3, .max_height_m = 3.0, .rings = 64};
-  small.layers = {{.samples = {{.method = distance, .count = 1024}},
-                   .scales = {{.radius_m = 0.6, .neighbours = 12, .channels = {16, 24}},
-                              {.radius_m = 1.2, .neighbours = 16, .channels = {16, 24}}}},
-                  {.samples = {{.method = feature, .count = 256}, {.method = distance, .count = 192}},
-                   .scales = {{.radius_m = 1.2, .neighbours = 16, .channels = {32, 48}},
-                              {.radius_m = 2.4, .neighbours = 20, .channels = {32, 48}}},
-                   .aggregate = 64},
-                  {.samples = {{.method = feature, .count = 192, .from = 0, .to = 256},
-                               {.method = distance, .count = 128, .from = 256, .to = -1}},
-                   .scales = {{.radius_m = 2.4, .neighbours = 16, .channels = {48, 64}},
-                              {.radius_m = 4.8, .neighbours = 20, .channels = {48, 64}}},
-                   .aggregate = 96}};
+      .max_points = 8192, .max_range_m = 50.0, .min_height_m = -0.3, .max_height_m = 3.0, .rings = 64};
+  small.layers = {{.samples = {{.method = distance, .count = 1536}},
+                   .scales = {{.radius_m = 0.5, .neighbours = 16, .channels = {16, 32}},
+                              {.radius_m = 1.0, .neighbours = 16, .channels = {16, 32}}}},
+                  {.samples = {{.method = feature, .count = 288}, {.method = distance, .count = 224}},
+                   .scales = {{.radius_m = 1.0, .neighbours = 16, .channels = {32, 64}},
+                              {.radius_m = 2.0, .neighbours = 24, .channels = {32, 64}}},
+                   .aggregate = 96},
+                  {.samples = {{.method = feature, .count = 192, .from = 0, .to = 288},
+                               {.method = distance, .count = 128, .from = 288, .to = -1}},
+                   .scales = {{.radius_m = 2.0, .neighbours = 16, .channels = {64, 96}},
+                              {.radius_m = 4.8, .neighbours = 24, .channels = {64, 96}}},
+                   .aggregate = 128}};
   small.vote = {.candidates = 192, .channels = {64}, .max_shift_m = {4.0, 4.0, 2.0}};
-  small.candidate_layer = {.scales = {{.radius_m = 3.0, .neighbours = 16, .channels = {96, 128}},
-                                      {.radius_m = 6.0, .neighbours = 20, .channels = {96, 128}}}};
+  small.candidate_layer = {.scales = {{.radius_m = 3.0, .neighbours = 16, .channels = {128, 128}},
+                                      {.radius_m = 6.0, .neighbours = 20, .channels = {128, 128}}}};
   small.head = {.shared = {128}, .classes = {64}, .boxes = {64}};
   return small;
 }

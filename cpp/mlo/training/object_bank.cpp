@@ -53,7 +53,6 @@ std::optional<double> ground_around(std::span<const Point> points, const Box3d& 
 /// How far an object is raised to stand on the ground; nothing if that would be too much.
 std::optional<double> lift_to_ground(std::span<const Point> points, const Box3d& box, double max_lift_m) {
   if (max_lift_m == 0.0) return 0.0;
-  if (max_lift_m == 0.0) return 0.0;
   const double bottom_m = box.center_lidar_m.z() - 0.5 * box.size_lwh_m.z();
   const double lift_m = ground_around(points, box).value_or(bottom_m) - bottom_m;
   if (std::abs(lift_m) > max_lift_m) return std::nullopt;
