@@ -138,6 +138,40 @@ void run_command(Options options) {
   }
 }
 
+void add_object_options(CLI::App& command, Options& options) {
+  command
+      .add_option("--detections", options.detections,
+                  "3D boxes: AB3DMOT CSV, KITTI labels or results, JSON or CSV of our own; file or folder")
+      ->type_name("PATH");
+  command
+      .add_option("--detector", options.detector,
+                  "Finds objects where no boxes are given, short for --set detection.detector=...")
+      ->check(CLI::IsMember({"none", "cluster", "3dssd"}))
+      ->excludes("--detections");
+}
+
+void add_map_options(CLI::App& command, Options& options) {
+  auto* map = command.add_option("--map", options.map,
+                                 "Localise in the map of an earlier run (scene.mlo, .ply, .pcd); make none");
+  map->type_name("FILE");
+  command
+      .add_option("--start", options.start,
+                  "Where in that map, within 5 m and 15 degrees [m, m, m, deg]; default: where its run began")
+      ->delimiter(',')
+      ->expected(4)
+      ->type_name("X,Y,Z,YAW")
+      ->needs(map);
+}
+
+void add_resume_options(CLI::App& command, RunOptions& options) {
+  command.add_flag("--resume", options.resume,
+                   "Go on where a run with the same DIR, scans and settings was stopped or killed");
+  command
+      .add_option("--save-every", options.state_scans,
+                  "Scans between the states that --resume goes on from, at first; 0: none")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_run(CLI::App& program) {
@@ -153,36 +187,13 @@ void add_run(CLI::App& program) {
       ->type_name("N");
   command->add_option("--format", options->open.format, "Layout of the folder; found out by default")
       ->check(CLI::IsMember({"auto", "kitti_odometry", "kitti_raw", "kitti_tracking", "folder"}));
-  command
-      ->add_option("--detections", options->detections,
-                   "3D boxes: AB3DMOT CSV, KITTI labels or results, JSON or CSV of our own; file or folder")
-      ->type_name("PATH");
-  command
-      ->add_option("--detector", options->detector,
-                   "Finds objects where no boxes are given, short for --set detection.detector=...")
-      ->check(CLI::IsMember({"none", "cluster", "3dssd"}))
-      ->excludes("--detections");
+  add_object_options(*command, *options);
   command->add_option("--frames", options->frames, "Only these frames, ends included: 0:99, 50:, :99")
       ->type_name("A:B");
   command->add_option("--roi", options->roi, "Region of interest, short for --set input.roi=...")
       ->check(CLI::IsMember({"full", "camera"}));
-  auto* map = command->add_option("--map", options->map,
-                                  "Localise in the map of an earlier run (scene.mlo, .ply, .pcd); make none");
-  map->type_name("FILE");
-  command
-      ->add_option(
-          "--start", options->start,
-          "Where in that map, within 5 m and 15 degrees [m, m, m, deg]; default: where its run began")
-      ->delimiter(',')
-      ->expected(4)
-      ->type_name("X,Y,Z,YAW")
-      ->needs(map);
-  command->add_flag("--resume", options->run.resume,
-                    "Go on where a run with the same DIR, scans and settings was stopped or killed");
-  command
-      ->add_option("--save-every", options->run.state_scans,
-                   "Scans between the states that --resume goes on from, at first; 0: none")
-      ->capture_default_str();
+  add_map_options(*command, *options);
+  add_resume_options(*command, options->run);
   command
       ->add_option("--threads", options->threads,
                    "Most threads to use, 0 for all cores; the results are the same")
