@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
+
+#include <tbb/parallel_sort.h>
 
 #include "mlo/core/parallel.hpp"
 #include "mlo/core/robust_kernel.hpp"
@@ -19,6 +22,7 @@ using Vector6d = NormalEquations::Vector6d;
 constexpr double kLeverArmM = 10.0;
 // Points are sorted by cubes of this side [m].
 constexpr float kSortingM = 2.0F;
+constexpr std::size_t kGrain = 1024;  // points that are worth a task
 
 // One source point through the iterations.
 struct Source {
@@ -40,27 +44,32 @@ std::uint64_t sorting_key(const VoxelKey& key) {
 // The points of the terms in the order of the places where they are expected: neighbours in the map come one
 // after the other, so that its voxels are still in the cache.
 std::vector<Source> collect(std::span<const RefinementTerm> terms, const SE3& T_map_lidar) {
-  struct Expected {
-    std::uint64_t place;
-    const RefinementTerm* term;
-    const FeaturePoint* point;
-  };
-  std::vector<Expected> all;
+  using Given = std::pair<const RefinementTerm*, const FeaturePoint*>;
+  std::vector<Given> given;
   for (const RefinementTerm& term : terms) {
-    for (const FeaturePoint& point : term.points) {
-      const Eigen::Vector3f p_map = (T_map_lidar * point.p_lidar.cast<double>()).cast<float>();
-      all.push_back({sorting_key(voxel_key(p_map, 1.0F / kSortingM)), &term, &point});
-    }
+    for (const FeaturePoint& point : term.points) given.emplace_back(&term, &point);
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Expected& a, const Expected& b) { return a.place < b.place; });
-  std::vector<Source> sources(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    sources[i].p_measured = all[i].point->p_lidar.cast<double>();
-    sources[i].p_lidar = sources[i].p_measured;
-    sources[i].sweep_fraction = all[i].point->sweep_fraction;
-    sources[i].term = all[i].term;
-  }
+  using Place = std::pair<std::uint64_t, std::size_t>;  // and which of the given is there
+  std::vector<Place> places(given.size());
+  parallel_for_each_index(
+      given.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3f p_map = (T_map_lidar * given[i].second->p_lidar.cast<double>()).cast<float>();
+        places[i] = {sorting_key(voxel_key(p_map, 1.0F / kSortingM)), i};
+      },
+      kGrain);
+  tbb::parallel_sort(places);
+  std::vector<Source> sources(given.size());
+  parallel_for_each_index(
+      sources.size(),
+      [&](std::size_t i) {
+        const auto& [term, point] = given[places[i].second];
+        sources[i].p_measured = point->p_lidar.cast<double>();
+        sources[i].p_lidar = sources[i].p_measured;
+        sources[i].sweep_fraction = point->sweep_fraction;
+        sources[i].term = term;
+      },
+      kGrain);
   return sources;
 }
 

@@ -27,8 +27,9 @@ class Aligner {
     Matches matches;
     if (ground) matches.ground = match_planes(features_.ground, placement, previous_.ground, config_);
     if (background) {
-      matches.edge = match_lines(features_.edge, placement, previous_.edge, config_);
-      matches.surface = match_planes(features_.surface, placement, previous_.surface, config_);
+      parallel_invoke(
+          [&] { matches.edge = match_lines(features_.edge, placement, previous_.edge, config_); },
+          [&] { matches.surface = match_planes(features_.surface, placement, previous_.surface, config_); });
     }
     return matches;
   }

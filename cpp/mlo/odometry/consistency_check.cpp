@@ -1,7 +1,8 @@
 #include "mlo/odometry/consistency_check.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <random>
+#include <vector>
 
 #include "mlo/core/gauss_newton.hpp"
 #include "mlo/core/parallel.hpp"
@@ -48,9 +49,12 @@ class Check {
 
   CountedMatches match(const SE3& T_previous_current) const {
     const Placement placement(T_previous_current, timing_);
-    return {match_lines(counted_.edge, placement, previous_.edge, config_),
-            match_planes(counted_.ground, placement, previous_.ground, config_),
-            match_planes(counted_.surface, placement, previous_.surface, config_)};
+    CountedMatches matches;
+    parallel_invoke(
+        [&] { matches.edge = match_lines(counted_.edge, placement, previous_.edge, config_); },
+        [&] { matches.ground = match_planes(counted_.ground, placement, previous_.ground, config_); },
+        [&] { matches.surface = match_planes(counted_.surface, placement, previous_.surface, config_); });
+    return matches;
   }
 
   // The motion by which a random sample of matches fits: half of it ground, half edges (surfaces where there
@@ -81,12 +85,9 @@ class Check {
     const Placement placement(T_previous_current, timing_);
     const auto agreeing = [&](const std::vector<FeaturePoint>& features, const CandidateSet& candidates,
                               double max_distance_m) {
-      return parallel_sum<std::size_t>(
-          features.size(),
-          [&](std::size_t& sum, std::size_t i) {
-            sum += agrees(features[i], placement, candidates, max_distance_m) ? 1 : 0;
-          },
-          kBlock);
+      return static_cast<std::size_t>(std::ranges::count_if(features, [&](const FeaturePoint& feature) {
+        return agrees(feature, placement, candidates, max_distance_m);
+      }));
     };
     const ConsistencyConfig& c = config_.consistency;
     return {agreeing(counted_.ground, previous_.ground, c.ground_max_distance_m),
@@ -153,8 +154,7 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
   const std::size_t num_counted = check.counted().size();
   const auto min_gain =
       static_cast<std::size_t>(config.consistency.min_gain * static_cast<double>(num_counted));
-  const auto try_motion = [&](const SE3& T_previous_current) {
-    const Counts counts = check.count(T_previous_current);
+  const auto judge = [&](const SE3& T_previous_current, const Counts& counts) {
     ++result.report.num_tried;
     const bool better = !result.report.passed || counts.all() > best_count + min_gain;
     if (!better || !check.passes(counts)) return;
@@ -163,16 +163,18 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
     result.report.passed = true;
   };
 
-  try_motion(T_best);
-  CountedMatches matches;
-  SE3 T_matched;
+  judge(T_best, check.count(T_best));
   // Nothing can gain enough once nearly all agree.
-  for (int i = 0; i < config.consistency.iterations && best_count + min_gain < num_counted; ++i) {
-    if (i % config.consistency.match_interval == 0) {
-      T_matched = T_best;
-      matches = check.match(T_matched);
-    }
-    try_motion(check.sample_motion(matches, T_matched, random));
+  const auto may_gain = [&] { return best_count + min_gain < num_counted; };
+  for (int i = 0; i < config.consistency.iterations && may_gain(); i += config.consistency.match_interval) {
+    const SE3 T_matched = T_best;
+    const CountedMatches matches = check.match(T_matched);
+    std::vector<SE3> motions(static_cast<std::size_t>(
+        std::min(config.consistency.match_interval, config.consistency.iterations - i)));
+    for (SE3& motion : motions) motion = check.sample_motion(matches, T_matched, random);
+    std::vector<Counts> counts(motions.size());
+    parallel_for_each_index(motions.size(), [&](std::size_t k) { counts[k] = check.count(motions[k]); });
+    for (std::size_t k = 0; k < motions.size() && may_gain(); ++k) judge(motions[k], counts[k]);
   }
   result.report.run = true;
   result.report.share = share(best_count, num_counted);
