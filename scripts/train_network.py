@@ -13,7 +13,7 @@ from pathlib import Path
 SCENES = ["city", "highway", "jam", "parking", "suburb"]
 SEEDS = range(101, 107)
 JUDGED_SEED = 107
-SETTINGS = ["seed=1", "epochs=13", "batch=1", "learning_rate=0.003", "every=3", "augmentation.max_rotation_deg=45"]
+SETTINGS = ["seed=1", "epochs=120", "batch=4", "learning_rate=0.003", "every=2", "augmentation.max_rotation_deg=45"]
 
 
 def simulate(options, scene, seed, scans):
@@ -33,7 +33,7 @@ def main():
     learnt = [simulate(options, scene, seed, 50) for scene in SCENES for seed in SEEDS]
     judged = [simulate(options, scene, JUDGED_SEED, 16) for scene in SCENES]
     subprocess.run([options.program, "train", *learnt, "--validate", *judged, "--validation-scans", "40",
-                    "--validate-every", "500", "--resume", "--out", options.out / "network",
+                    "--validate-every", "1000", "--resume", "--out", options.out / "network",
                     *[word for setting in SETTINGS for word in ("--set", setting)]], check=True)
 
 
