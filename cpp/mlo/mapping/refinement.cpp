@@ -24,10 +24,9 @@ constexpr double kLeverArmM = 10.0;
 constexpr float kSortingM = 2.0F;
 constexpr std::size_t kGrain = 1024;  // points that are worth a task
 
-// One source point through the iterations.
+// One source point through the iterations. Small, as all of them are gone through in each.
 struct Source {
-  Eigen::Vector3d p_measured;  // lidar frame at its own time
-  Eigen::Vector3d p_lidar;     // brought to the reference time
+  Eigen::Vector3f p_measured;  // lidar frame at its own time
   float sweep_fraction = 0.0F;
   const RefinementTerm* term = nullptr;
   Eigen::Vector3f searched_map;  // where its neighbours were last searched
@@ -64,8 +63,7 @@ std::vector<Source> collect(std::span<const RefinementTerm> terms, const SE3& T_
       sources.size(),
       [&](std::size_t i) {
         const auto& [term, point] = given[places[i].second];
-        sources[i].p_measured = point->p_lidar.cast<double>();
-        sources[i].p_lidar = sources[i].p_measured;
+        sources[i].p_measured = point->p_lidar;
         sources[i].sweep_fraction = point->sweep_fraction;
         sources[i].term = term;
       },
@@ -73,8 +71,8 @@ std::vector<Source> collect(std::span<const RefinementTerm> terms, const SE3& T_
   return sources;
 }
 
-void match(Source& source, const SE3& T_map_lidar, double gate_m, const RefinementConfig& config) {
-  const Eigen::Vector3f query = (T_map_lidar * source.p_lidar).cast<float>();
+void match(Source& source, const Eigen::Vector3d& p_map, double gate_m, const RefinementConfig& config) {
+  const Eigen::Vector3f query = p_map.cast<float>();
   const auto rematch = static_cast<float>(config.rematch_distance_m);
   if (source.searched && (query - source.searched_map).squaredNorm() <= rematch * rematch) return;
   source.searched_map = query;
@@ -83,23 +81,21 @@ void match(Source& source, const SE3& T_map_lidar, double gate_m, const Refineme
   source.match = describe(neighbours, source.term->expected, config);
 }
 
-// Perturbation at the lidar's origin, axes of the map: p = exp(w) R p_lidar + t + v.
-void accumulate(const Source& source, const SE3& T_map_lidar, double gate_m, double kernel_m,
-                NormalEquations& sums) {
-  if (source.match.num_directions == 0) return;
-  const Eigen::Vector3d arm = T_map_lidar.rotation() * source.p_lidar;
-  const Eigen::Vector3d p_map = arm + T_map_lidar.translation();
-  const double d2 = source.match.squared_distance_m2(p_map);
+// Perturbation at the lidar's origin, axes of the map: p_map = exp(w) arm + t + v with arm = R p_lidar.
+void accumulate(const ShapeMatch& match, const Eigen::Vector3d& arm, const Eigen::Vector3d& p_map,
+                double gate_m, double kernel_m, NormalEquations& sums) {
+  if (match.num_directions == 0) return;
+  const double d2 = match.squared_distance_m2(p_map);
   if (!(d2 <= gate_m * gate_m)) return;
   const double robust = geman_mcclure_weight(d2, kernel_m);
-  const Eigen::Vector3d d = p_map - source.match.q_map.cast<double>();
-  for (int i = 0; i < source.match.num_directions; ++i) {
+  const Eigen::Vector3d d = p_map - match.q_map.cast<double>();
+  for (int i = 0; i < match.num_directions; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const Eigen::Vector3d n = source.match.directions[k].cast<double>();
+    const Eigen::Vector3d n = match.directions[k].cast<double>();
     Vector6d jacobian;
     jacobian.head<3>() = n;
     jacobian.tail<3>() = arm.cross(n);
-    sums.add(n.dot(d), jacobian, robust * static_cast<double>(source.match.weights[k]));
+    sums.add(n.dot(d), jacobian, robust * static_cast<double>(match.weights[k]));
   }
 }
 
@@ -185,11 +181,12 @@ class Registration {
         count,
         [&](NormalEquations& sums, std::size_t i) {
           Source& source = sources_[i * stride];
-          if (!guess_.timing.motion_compensated) {
-            source.p_lidar = motion.undistort(source.p_measured, static_cast<double>(source.sweep_fraction));
-          }
-          match(source, T_map_lidar, gate_m, config_);
-          accumulate(source, T_map_lidar, gate_m, kernel_m, sums);
+          const Eigen::Vector3d p_lidar =
+              motion.undistort(source.p_measured.cast<double>(), static_cast<double>(source.sweep_fraction));
+          const Eigen::Vector3d arm = T_map_lidar.rotation() * p_lidar;
+          const Eigen::Vector3d p_map = arm + T_map_lidar.translation();
+          match(source, p_map, gate_m, config_);
+          accumulate(source.match, arm, p_map, gate_m, kernel_m, sums);
         },
         128);
   }

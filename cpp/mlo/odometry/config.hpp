@@ -68,7 +68,7 @@ struct OdometryConfig {
   bool consistency_check = true;
   ConsistencyConfig consistency;
   int max_features = 600;
-  int max_candidates = 10000;
+  int max_candidates = 5000;
   double gate_m = 1.0;
   double patch_radius_m = 3.0;
   double min_baseline_m = 0.25;
