@@ -87,6 +87,64 @@ TEST(TrajectoryList, WhatStopsIsAtRestAgainAfterAWhile) {
   EXPECT_TRUE(std::is_sorted(after.begin(), after.end(), std::greater<>())) << "it stops once";
 }
 
+TEST(TrajectoryList, RollingToAStopItMovesAsLongAsItsPointsDo) {
+  TrajectoryList list = make_list();
+  double x_m = 0.0;
+  std::uint64_t scan = 0;
+  for (; scan < 10; ++scan) update(list, sight_at(x_m += 0.3, 0.9, scan));
+  for (; scan < 20; ++scan)
+    EXPECT_EQ(update(list, sight_at(x_m += 0.05, 0.3, scan)), Mobility::moving)
+        << "at 0.5 m/s, scan " << scan;
+  int scans_to_rest = 0;
+  for (; scan < 40 && update(list, sight_at(x_m, 0.3, scan)) == Mobility::moving; ++scan) ++scans_to_rest;
+  EXPECT_LE(scans_to_rest, 4);
+}
+
+TEST(TrajectoryList, WhatOnlySeemedToMoveRestsOnceItsPointsStay) {
+  TrajectoryList list = make_list();
+  EXPECT_EQ(update(list, sight_at(0.0, 0.99, 0)), Mobility::moving)
+      << "at first sight only the speed is known";
+  for (std::uint64_t scan = 1; scan < 4; ++scan) update(list, sight_at(0.0, 0.99, scan));
+  EXPECT_EQ(update(list, sight_at(0.0, 0.99, 4)), Mobility::at_rest);
+}
+
+TEST(TrajectoryList, AFlatSideThatSlidesAlongItsOwnTrailMoves) {
+  TrajectoryList list = make_list();
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<float> share(-0.5F, 0.5F);
+  for (int scan = 0; scan < 30; ++scan) {
+    const double x_m = 0.6 * scan;
+    ObjectSight sight{.id = 7,
+                      .T_map_object = {so3_exp({0.0, 0.0, 0.0}), Eigen::Vector3d(x_m, 5.0, 0.0)},
+                      .moving_probability = 0.99};
+    // The part that is seen of a lorry's side is always the same.
+    for (int i = 0; i < 600; ++i)
+      sight.points_map.emplace_back(12.0F * share(random), 5.0F, 2.0F * share(random));
+    for (int i = 0; i < 100; ++i)
+      sight.points_map.emplace_back(6.0F, 5.0F + share(random), 2.0F * share(random));
+    EXPECT_EQ(update(list, sight), Mobility::moving) << "scan " << scan;
+  }
+}
+
+TEST(TrajectoryList, AYoungMapTellsOfAClearMotion) {
+  TrajectoryList list = make_list();
+  double x_m = 0.0;
+  for (std::uint64_t scan = 0; scan < 3; ++scan) update(list, sight_at(x_m += 0.12, 0.1, scan));
+  EXPECT_EQ(update(list, sight_at(x_m += 0.12, 0.1, 3)), Mobility::moving) << "at 1.2 m/s";
+}
+
+TEST(TrajectoryList, ASpeedInDoubtKeepsWhatWas) {
+  TrajectoryList list = make_list();
+  const auto without_points = [&](double moving_probability) {
+    ObjectSight sight = sight_at(0.0, moving_probability, 1);
+    sight.points_map.clear();
+    return update(list, sight);
+  };
+  EXPECT_EQ(without_points(0.55), Mobility::at_rest);
+  EXPECT_EQ(without_points(0.7), Mobility::moving);
+  EXPECT_EQ(without_points(0.55), Mobility::moving);
+}
+
 TEST(TrajectoryList, MapsInTheObjectsFrameAndForgetsTheTimeAtRestWhenItStarts) {
   TrajectoryList list = make_list();
   for (std::uint64_t scan = 0; scan < 10; ++scan) update(list, sight_at(0.0, 0.1, scan));

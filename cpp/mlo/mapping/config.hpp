@@ -194,9 +194,12 @@ struct StaticMapConfig {
 /// Which objects move, section III-D-1.
 struct DynamicCheckConfig {
   bool static_objects_localise = false;
+  double start_probability = 0.6;
   double moving_probability = 0.5;
   double min_displacement_m = 0.07;
   double min_significance = 4.0;
+  double young_significance = 6.0;
+  double young_loss_gain = 0.4;
   double in_place_m = 0.25;
   double in_place_fit = 0.7;
   double min_fit_gain = 0.12;
@@ -204,6 +207,8 @@ struct DynamicCheckConfig {
   double same_place_m = 1.0;
   int scans_displaced = 2;
   int scans_in_place = 3;
+  double still_m = 0.1;
+  int scans_still = 3;
   int min_points = 10;
   double map_spacing_m = 0.1;
   double gate_m = 0.5;
@@ -217,13 +222,19 @@ struct DynamicCheckConfig {
   void fields(Visitor& visit) {
     visit("static_objects_localise", static_objects_localise, Anything{},
           "points of objects at rest take part in the map refinement, as in the paper; off is its MLO-ddo");
+    visit("start_probability", start_probability, between(0.0, 1.0),
+          "by speed alone, an object at rest moves from here on: lower finds slow ones sooner, and noise");
     visit("moving_probability", moving_probability, between(0.0, 1.0),
-          "by speed alone, objects count as moving from here on: lower finds slow ones sooner, and noise");
+          "and one that moves does so as long as it is above this");
     visit("min_displacement_m", min_displacement_m, between(0.0, 10.0),
           "an object that rested moves when its points lie this far from where they were [m]");
     visit("min_significance", min_significance, between(0.0, 100.0), "and this many standard deviations");
     visit("min_fit_gain", min_fit_gain, between(-1.0, 1.0),
           "and when this much more of them fit after undoing it: higher bears new sides of an object");
+    visit("young_significance", young_significance, between(0.0, 100.0),
+          "significance that is asked for while the map of the object is young");
+    visit("young_loss_gain", young_loss_gain, between(0.0, 1.0),
+          "and by how much undoing the displacement must then lower the points' distances, as a share");
     visit("in_place_m", in_place_m, between(0.0, 10.0),
           "whatever its speed seems, an object whose points surely lie within this of where they were is at "
           "rest [m]");
@@ -234,7 +245,11 @@ struct DynamicCheckConfig {
           "a detection this near to an object at rest is taken for it before tracking says so [m]");
     visit("scans_displaced", scans_displaced, between(1, 100), "in so many scans in a row");
     visit("scans_in_place", scans_in_place, between(1, 1000),
-          "an object too slow for its speed to tell is at rest again after so many scans in a row in place");
+          "where points can tell, an object that moves is at rest again after so many scans in a row without "
+          "speed or displacement");
+    visit("still_m", still_m, between(0.0, 10.0),
+          "or, whatever its speed seems, with its points surely within this of where they were [m]");
+    visit("scans_still", scans_still, between(1, 1000), "in so many scans");
     visit("min_points", min_points, between(3, 10000), "with fewer only the speed counts");
     visit("map_spacing_m", map_spacing_m, between(0.01, 1.0),
           "between points in the map of an object: detail against memory [m]");

@@ -1,5 +1,6 @@
 #include "mlo/mapping/object_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -24,14 +25,17 @@ struct PlanarSums {
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   double cost = 0.0;
   int count = 0;
-  int close = 0;  // of those, on the map
+  int close = 0;      // of those, on the map
+  double loss = 0.0;  // Geman and McClure's, of all points: 1 of one that is far from the map
 };
 
 void accumulate(const ShapeMatch& match, const Eigen::Vector3d& p_map, const Eigen::Vector2d& arm,
                 const DynamicCheckConfig& config, PlanarSums& sums) {
+  sums.loss += 1.0;
   if (match.num_directions == 0) return;
   const double d2 = match.squared_distance_m2(p_map);
   if (d2 > config.gate_m * config.gate_m) return;
+  sums.loss -= 1.0 - d2 / (config.kernel_m * config.kernel_m + d2);
   if (d2 < kClose * kClose * config.point_sd_m * config.point_sd_m) ++sums.close;
   const double robust = geman_mcclure_weight(d2, config.kernel_m);
   const Eigen::Vector3d d = p_map - match.q_map.cast<double>();
@@ -104,12 +108,18 @@ Displacement measure_displacement(std::span<const Eigen::Vector3f> points_map, c
           .cwiseInverse() *
       (config.point_sd_m * config.point_sd_m * kPointsPerMeasurement);
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();
+  constexpr double kTiny = 1e-9;
+  double loss_before = 0.0;
   PlanarSums sums;
   for (int i = 0; i < config.iterations; ++i) {
     sums = linearize(points_map, stride, motion, at_rest, config, shapes);
     if (sums.count < config.min_points) return result;
     result.fit_after = static_cast<double>(sums.close) / static_cast<double>(num_points);
-    if (i == 0) result.fit_before = result.fit_after;
+    if (i == 0) {
+      result.fit_before = result.fit_after;
+      loss_before = sums.loss;
+    }
+    result.loss_gain = (loss_before - sums.loss) / std::max(loss_before, kTiny);
     sums.H.diagonal() += prior;
     sums.g += prior.cwiseProduct(motion);
     motion -= sums.H.ldlt().solve(sums.g);

@@ -39,6 +39,10 @@ struct Displacement {
   double fit_before = 0.0;
   double fit_after = 0.0;
 
+  /// By how much the shift lowers the points' robust distances from the map, new parts included: from 0, not
+  /// at all, to 1, wholly.
+  double loss_gain = 0.0;
+
   double length_m() const { return shift_map_m.norm(); }
   /// In the least certain direction.
   double sd_m() const;

@@ -7,6 +7,8 @@
 namespace mlo {
 namespace {
 
+constexpr double kSure = 2.0;  // standard deviations
+
 LocalMapConfig local_map_config(const DynamicCheckConfig& config) {
   LocalMapConfig map;
   map.min_spacing_m = config.map_spacing_m;
@@ -69,31 +71,10 @@ const LocalMap* TrajectoryList::map_at_rest(const Eigen::Vector3d& center_map) c
 
 void TrajectoryList::update(Entry& entry, const ObjectSight& sight) const {
   const Displacement displacement = measure_displacement(sight.points_map, entry.at_rest, config_, shapes_);
-  const bool displaced = is_displaced(displacement);
-  const bool fast = sight.moving_probability > config_.moving_probability;
   if (entry.mobility == Mobility::at_rest) {
-    // Of a map that is still young, new sides of the object look like its motion.
-    const bool mature = entry.sightings >= config_.min_sightings;
-    entry.scans_displaced = displaced && mature ? entry.scans_displaced + 1 : 0;
-    const bool starts = fast && !is_in_place(displacement);
-    if (starts || entry.scans_displaced >= config_.scans_displaced) {
-      entry.sightings = 0;
-      entry.mobility = Mobility::moving;
-      entry.too_slow_to_tell = !fast;
-      entry.scans_displaced = 0;
-      entry.scans_in_place = 0;
-      entry.at_rest.clear();
-      entry.map.clear();
-    }
+    update_at_rest(entry, sight, displacement);
   } else {
-    if (displaced) entry.at_rest.clear();
-    if (fast) entry.too_slow_to_tell = false;
-    entry.scans_in_place = fast || displaced ? 0 : entry.scans_in_place + 1;
-    if (entry.scans_in_place >= (entry.too_slow_to_tell ? config_.scans_in_place : 1)) {
-      entry.mobility = Mobility::at_rest;
-      entry.sightings = 0;
-      entry.T_map_object = sight.T_map_object;
-    }
+    update_moving(entry, sight, displacement);
   }
   if (!sight.points_map.empty()) ++entry.sightings;
   if (entry.scans_displaced == 0) entry.at_rest.insert(sight.points_map);
@@ -102,16 +83,66 @@ void TrajectoryList::update(Entry& entry, const ObjectSight& sight) const {
                    config_.map_spacing_m);
 }
 
+void TrajectoryList::update_at_rest(Entry& entry, const ObjectSight& sight,
+                                    const Displacement& displacement) const {
+  const bool fast = sight.moving_probability > config_.start_probability;
+  // Of a map that is still young, new sides of the object look like its motion.
+  const bool young = entry.sightings < config_.min_sightings;
+  const bool displaced =
+      young ? is_displaced_from_young_map(displacement) && entry.sightings > 1 : is_displaced(displacement);
+  entry.scans_displaced = displaced ? entry.scans_displaced + 1 : 0;
+  const bool starts = fast && !is_within(displacement, config_.in_place_m);
+  if (!starts && entry.scans_displaced < config_.scans_displaced) return;
+  entry.sightings = 0;
+  entry.mobility = Mobility::moving;
+  entry.too_slow_to_tell = !fast;
+  entry.scans_displaced = 0;
+  entry.scans_in_place = 0;
+  entry.scans_still = 0;
+  entry.T_map_object = sight.T_map_object;
+  entry.at_rest.clear();
+  entry.map.clear();
+}
+
+void TrajectoryList::update_moving(Entry& entry, const ObjectSight& sight,
+                                   const Displacement& displacement) const {
+  const bool fast = sight.moving_probability > config_.moving_probability;
+  if (fast) entry.too_slow_to_tell = false;
+  const bool displaced = is_displaced(displacement);
+  // A long flat side slides along the trail that it leaves: only near its begin does that tell of a stop.
+  const double way_m = (sight.T_map_object.translation() - entry.T_map_object.translation()).head<2>().norm();
+  const bool elsewhere = displaced || way_m > config_.in_place_m;
+  if (elsewhere) {
+    entry.at_rest.clear();
+    entry.T_map_object = sight.T_map_object;
+  }
+  entry.scans_in_place = fast || displaced ? 0 : entry.scans_in_place + 1;
+  const bool still = fast && !elsewhere && is_within(displacement, config_.still_m);
+  if (displacement.known) entry.scans_still = still ? entry.scans_still + 1 : 0;
+  // The slow end of a motion is seen by the points only, and that takes a while.
+  const bool points_tell = displacement.known && kSure * displacement.sd_m() < config_.in_place_m;
+  const int scans_needed = points_tell || entry.too_slow_to_tell ? config_.scans_in_place : 1;
+  if (entry.scans_in_place < scans_needed && entry.scans_still < config_.scans_still) return;
+  entry.mobility = Mobility::at_rest;
+  entry.sightings = 0;
+  entry.T_map_object = sight.T_map_object;
+}
+
 bool TrajectoryList::is_displaced(const Displacement& displacement) const {
   return displacement.known && displacement.length_m() > config_.min_displacement_m &&
          displacement.significance() > config_.min_significance &&
          displacement.fit_after - displacement.fit_before > config_.min_fit_gain;
 }
 
-bool TrajectoryList::is_in_place(const Displacement& displacement) const {
-  constexpr double kSure = 2.0;  // standard deviations
+bool TrajectoryList::is_displaced_from_young_map(const Displacement& displacement) const {
+  return displacement.known && displacement.length_m() > config_.min_displacement_m &&
+         displacement.significance() > config_.young_significance &&
+         displacement.loss_gain > config_.young_loss_gain;
+}
+
+bool TrajectoryList::is_within(const Displacement& displacement, double distance_m) const {
   return displacement.known && displacement.fit_before > config_.in_place_fit &&
-         displacement.length_m() + kSure * displacement.sd_m() < config_.in_place_m;
+         displacement.length_m() + kSure * displacement.sd_m() < distance_m;
 }
 
 }  // namespace mlo

@@ -65,18 +65,22 @@ class TrajectoryList {
     int scans_displaced = 0;                // in a row, while at rest
     bool too_slow_to_tell = false;          // moves, but only its displacement shows it
     int scans_in_place = 0;                 // in a row, while moving
-    SE3 T_map_object;                       // at rest: the oldest pose
-    LocalMap at_rest;                       // its points while it rests, map frame
+    int scans_still = 0;                    // the same, by its points alone
+    SE3 T_map_object;                       // the oldest pose at rest, or where at_rest begins
+    LocalMap at_rest;                       // its points while it rests, or moves little; map frame
     ObjectMap map;
     static void archive(auto& self, auto& bytes) {
       bytes(self.mobility, self.sightings, self.scans_displaced, self.too_slow_to_tell, self.scans_in_place,
-            self.T_map_object, self.at_rest, self.map);
+            self.scans_still, self.T_map_object, self.at_rest, self.map);
     }
   };
 
   void update(Entry& entry, const ObjectSight& sight) const;
+  void update_at_rest(Entry& entry, const ObjectSight& sight, const Displacement& displacement) const;
+  void update_moving(Entry& entry, const ObjectSight& sight, const Displacement& displacement) const;
   bool is_displaced(const Displacement& displacement) const;
-  bool is_in_place(const Displacement& displacement) const;
+  bool is_displaced_from_young_map(const Displacement& displacement) const;
+  bool is_within(const Displacement& displacement, double distance_m) const;
 
   DynamicCheckConfig config_;
   RefinementConfig shapes_;
