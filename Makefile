@@ -37,8 +37,8 @@ demo: build
 demo-simulated:
 	@echo "Simulating a drive through a city (synthetic data):"
 	@$(BUILD)/bin/mlo simulate --scene city --length 150 --seed 7 --overwrite --out "$(OUT)/drive"
-	@echo "Estimating trajectory, objects and static map:"
-	@$(BUILD)/bin/mlo run "$(OUT)/drive" --out "$(OUT)/run"
+	@echo "Estimating trajectory, objects (found by the network that comes with mlo) and static map:"
+	@$(BUILD)/bin/mlo run "$(OUT)/drive" --detector 3dssd --out "$(OUT)/run"
 	@$(BUILD)/bin/mlo eval trajectory --truth "$(OUT)/drive/truth/poses_stamp.txt" --estimate "$(OUT)/run/trajectory.txt" \
 	  --plot "$(OUT)/trajectory.svg"
 	@echo
@@ -50,6 +50,7 @@ test:
 	@cmake --build $(BUILD) -j $(JOBS)
 	@ctest --test-dir $(BUILD) --output-on-failure
 
+bench: BOXES = $(DATA)/kitti_tracking/training/detections
 bench:
 	$(call install,build bench)
 	@cmake --preset release -DMLO_BUILD_BENCHMARKS=ON
@@ -57,7 +58,11 @@ bench:
 	@for program in $(BUILD)/bin/bench_*; do $$program || exit 1; done
 	@if [ -n "$(DATA)" ]; then \
 	  cmake --build $(BUILD) --target mlo -j $(JOBS) && \
-	  scripts/evaluate_sequences.py --data "$(DATA)" --program $(BUILD)/bin/mlo --out out/bench --variant default:; \
+	  scripts/evaluate_sequences.py --data "$(DATA)" --program $(BUILD)/bin/mlo --out out/bench --variant default: && \
+	  scripts/evaluate_sequences.py --data "$(DATA)" --program $(BUILD)/bin/mlo --out out/bench_objects --sequence 0005 \
+	    --variant "PointRCNN: --detections $(BOXES)/pointrcnn_car/0000.txt $(BOXES)/pointrcnn_pedestrian/0000.txt \
+	      $(BOXES)/pointrcnn_cyclist/0000.txt" \
+	    --variant "cluster: --set detection.detector=cluster" --variant "3dssd: --set detection.detector=3dssd"; \
 	fi
 
 format:

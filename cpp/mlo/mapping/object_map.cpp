@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -18,6 +19,18 @@ constexpr double kPointsPerMeasurement = 4.0;
 constexpr double kClose = 3.0;
 // More points of one object are thinned: they say no more.
 constexpr std::size_t kMaxPoints = 300;
+// Steps below these change no decision.
+constexpr double kSettled_m = 0.002;
+constexpr double kSettled_rad = 0.001;
+
+// Motions below these find the same neighbours.
+constexpr double kRematch_m = 0.01;
+constexpr double kRematch_rad = 0.005;
+
+// Of [x y yaw].
+bool is_small(const Eigen::Vector3d& motion, double max_m, double max_rad) {
+  return motion.head<2>().norm() < max_m && std::abs(motion.z()) < max_rad;
+}
 
 // [x y yaw] of a motion in the plane, about the points' centre.
 struct PlanarSums {
@@ -52,24 +65,53 @@ void accumulate(const ShapeMatch& match, const Eigen::Vector3d& p_map, const Eig
   ++sums.count;
 }
 
-// Of every stride-th point, moved.
-PlanarSums linearize(std::span<const Eigen::Vector3f> points_map, std::size_t stride,
-                     const Eigen::Vector3d& motion, const LocalMap& at_rest, const DynamicCheckConfig& config,
-                     const RefinementConfig& shapes) {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : points_map) center += p.cast<double>();
-  center /= static_cast<double>(points_map.size());
-  const Eigen::Matrix3d R = so3_exp({0.0, 0.0, motion.z()}).toRotationMatrix();
-  PlanarSums sums;
-  for (std::size_t k = 0; k < points_map.size(); k += stride) {
-    const Eigen::Vector3d arm = R * (points_map[k].cast<double>() - center);
-    const Eigen::Vector3d moved = center + arm + Eigen::Vector3d(motion.x(), motion.y(), 0.0);
-    const NearestPoints near =
-        at_rest.nearest(moved.cast<float>(), shapes.neighbours, static_cast<float>(config.gate_m));
-    accumulate(describe(near, ExpectedShape::plane, shapes), moved, arm.head<2>(), config, sums);
+// Every stride-th point of an object, with what the map has around it.
+class MatchedPoints {
+ public:
+  MatchedPoints(std::span<const Eigen::Vector3f> points_map, const LocalMap& at_rest,
+                const DynamicCheckConfig& config, const RefinementConfig& shapes)
+      : at_rest_(at_rest), config_(config), shapes_(shapes) {
+    for (const Eigen::Vector3f& p : points_map) center_ += p.cast<double>();
+    center_ /= static_cast<double>(points_map.size());
+    const std::size_t stride = 1 + points_map.size() / kMaxPoints;
+    for (std::size_t k = 0; k < points_map.size(); k += stride) {
+      arms_.push_back(points_map[k].cast<double>() - center_);
+    }
+    matches_.resize(arms_.size());
   }
-  return sums;
-}
+
+  std::size_t size() const { return arms_.size(); }
+
+  // After a motion. Matches are searched anew unless it hardly differs from that of the last search.
+  PlanarSums linearize(const Eigen::Vector3d& motion) {
+    const bool searches = !searched_ || !is_small(motion - *searched_, kRematch_m, kRematch_rad);
+    if (searches) searched_ = motion;
+    const Eigen::Matrix3d R = so3_exp({0.0, 0.0, motion.z()}).toRotationMatrix();
+    PlanarSums sums;
+    for (std::size_t k = 0; k < arms_.size(); ++k) {
+      const Eigen::Vector3d arm = R * arms_[k];
+      const Eigen::Vector3d moved = center_ + arm + Eigen::Vector3d(motion.x(), motion.y(), 0.0);
+      if (searches) matches_[k] = match(moved);
+      accumulate(matches_[k], moved, arm.head<2>(), config_, sums);
+    }
+    return sums;
+  }
+
+ private:
+  ShapeMatch match(const Eigen::Vector3d& p_map) const {
+    const NearestPoints near =
+        at_rest_.nearest(p_map.cast<float>(), shapes_.neighbours, static_cast<float>(config_.gate_m));
+    return describe(near, ExpectedShape::plane, shapes_);
+  }
+
+  const LocalMap& at_rest_;
+  const DynamicCheckConfig& config_;
+  const RefinementConfig& shapes_;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> arms_;  // from the centre
+  std::vector<ShapeMatch> matches_;
+  std::optional<Eigen::Vector3d> searched_;  // the motion of the last search
+};
 
 }  // namespace
 
@@ -100,8 +142,7 @@ Displacement measure_displacement(std::span<const Eigen::Vector3f> points_map, c
                                   const DynamicCheckConfig& config, const RefinementConfig& shapes) {
   Displacement result;
   if (points_map.empty()) return result;
-  const std::size_t stride = 1 + points_map.size() / kMaxPoints;
-  const std::size_t num_points = (points_map.size() + stride - 1) / stride;
+  MatchedPoints points(points_map, at_rest, config, shapes);
   const Eigen::Vector3d prior =
       Eigen::Vector3d(config.prior_shift_sd_m, config.prior_shift_sd_m, config.prior_turn_sd_rad)
           .cwiseAbs2()
@@ -112,9 +153,9 @@ Displacement measure_displacement(std::span<const Eigen::Vector3f> points_map, c
   double loss_before = 0.0;
   PlanarSums sums;
   for (int i = 0; i < config.iterations; ++i) {
-    sums = linearize(points_map, stride, motion, at_rest, config, shapes);
+    sums = points.linearize(motion);
     if (sums.count < config.min_points) return result;
-    result.fit_after = static_cast<double>(sums.close) / static_cast<double>(num_points);
+    result.fit_after = static_cast<double>(sums.close) / static_cast<double>(points.size());
     if (i == 0) {
       result.fit_before = result.fit_after;
       loss_before = sums.loss;
@@ -122,7 +163,9 @@ Displacement measure_displacement(std::span<const Eigen::Vector3f> points_map, c
     result.loss_gain = (loss_before - sums.loss) / std::max(loss_before, kTiny);
     sums.H.diagonal() += prior;
     sums.g += prior.cwiseProduct(motion);
-    motion -= sums.H.ldlt().solve(sums.g);
+    const Eigen::Vector3d step = sums.H.ldlt().solve(sums.g);
+    motion -= step;
+    if (is_small(step, kSettled_m, kSettled_rad)) break;
   }
   const double variance =
       kPointsPerMeasurement * std::max(config.point_sd_m * config.point_sd_m, sums.cost / sums.count);
