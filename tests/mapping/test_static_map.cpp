@@ -31,8 +31,7 @@ TEST(StaticMap, KeepsOnePointPerVoxelOverAllScans) {
   std::vector<MapPoint> seen;
   for (int i = 0; i < 1000; ++i) {
     const auto k = static_cast<float>(i);
-    seen.push_back(
-        at(std::fmod(0.137F * k, 4.0F), std::fmod(0.071F * k, 3.0F), std::fmod(0.037F * k, 2.0F)));
+    seen.push_back(at(std::fmod(0.137F * k, 4.0F), std::fmod(0.071F * k, 3.0F), std::fmod(0.037F * k, 2.0F)));
   }
   StaticMap map({.voxel_m = 0.5});
   map.insert(seen, 0);
@@ -167,8 +166,7 @@ TEST(StaticMap, WhatWaitsOnDiskIsTheSameMap) {
 
 TEST(StaticMap, WhatWasHardlySeenGoesWithItsSurroundings) {
   std::vector<MapPoint> seen;
-  for (int i = 0; i < 3; ++i)
-    seen.push_back(at(10.1F, 0.1F + 0.25F * static_cast<float>(i), 0.1F));
+  for (int i = 0; i < 3; ++i) seen.push_back(at(10.1F, 0.1F + 0.25F * static_cast<float>(i), 0.1F));
   seen.push_back(at(10.1F, 0.1F, 0.9F));  // above the rays, in the same cubic metre
   seen.push_back(at(10.1F, 0.1F, 2.9F));  // elsewhere
   StaticMap map({});

@@ -21,7 +21,7 @@ std::vector<Eigen::Vector3f> car_points(const SE3& T_map_object, std::uint64_t s
     const Eigen::Vector3d p_object =
         i % 2 == 0 ? Eigen::Vector3d(-0.5 * kSize.x() + noise(random), share(random) * kSize.y(), z)
                    : Eigen::Vector3d(share(random) * kSize.x(), 0.5 * kSize.y() + noise(random), z);
-    points.push_back((T_map_object * p_object).cast<float>());
+    points.emplace_back((T_map_object * p_object).cast<float>());
   }
   return points;
 }
@@ -222,7 +222,7 @@ TEST(Displacement, IsUnsureAlongAFlatSide) {
   map.insert(wall(1));
   std::vector<Eigen::Vector3f> part;
   for (const Eigen::Vector3f& p : wall(2)) {
-    if (std::abs(p.x()) < 3.0F) part.push_back(p + Eigen::Vector3f(0.4F, 0.0F, 0.0F));
+    if (std::abs(p.x()) < 3.0F) part.emplace_back(p + Eigen::Vector3f(0.4F, 0.0F, 0.0F));
   }
   const Displacement found = measure_displacement(part, map, {}, {});
   ASSERT_TRUE(found.known);

@@ -75,7 +75,7 @@ class MatchedPoints {
     center_ /= static_cast<double>(points_map.size());
     const std::size_t stride = 1 + points_map.size() / kMaxPoints;
     for (std::size_t k = 0; k < points_map.size(); k += stride) {
-      arms_.push_back(points_map[k].cast<double>() - center_);
+      arms_.emplace_back(points_map[k].cast<double>() - center_);
     }
     matches_.resize(arms_.size());
   }

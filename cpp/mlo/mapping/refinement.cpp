@@ -127,7 +127,7 @@ class Registration {
     const int max_iterations =
         guess_.motion_known ? config_.max_iterations : config_.max_iterations_without_motion;
     double gate_m = guess_.motion_known ? config_.gate_m : config_.gate_without_motion_m;
-    std::size_t stride = static_cast<std::size_t>(config_.coarse_stride);
+    auto stride = static_cast<std::size_t>(config_.coarse_stride);
     result.status = EstimateStatus::max_iterations;
     for (int i = 0; i < max_iterations; ++i) {
       const NormalEquations sums = linearize(T_map_lidar, gate_m, stride);

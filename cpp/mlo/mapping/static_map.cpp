@@ -54,9 +54,8 @@ bool StaticMap::is_left_out(const MapPoint& point, const LeftOut& left_out, cons
   if (point.label != MapLabel::ground && left_out.columns.contains(point.p_map)) return true;
   if (left_out.moving.empty()) return false;
   const Eigen::Vector3d p_lidar = T_lidar_map * point.p_map.cast<double>();
-  return std::ranges::any_of(left_out.moving, [&](const Box3d& box) {
-    return box.contains(p_lidar, config_.moving_margin_m);
-  });
+  return std::ranges::any_of(
+      left_out.moving, [&](const Box3d& box) { return box.contains(p_lidar, config_.moving_margin_m); });
 }
 
 StaticMap::PointsOfTiles StaticMap::by_tiles(std::span<const MapPoint> points, const LeftOut& left_out) {

@@ -23,9 +23,9 @@ namespace mlo {
 
 /// What of a scan is left out of the static map.
 struct LeftOut {
-  SE3 T_map_lidar;                ///< where it was seen from
+  SE3 T_map_lidar;                 ///< where it was seen from
   std::vector<Box3d> moving = {};  ///< what moves, in the lidar frame: points in or near these boxes
-  ColumnSet columns = {};         ///< of things that move without a box: all but the ground in them
+  ColumnSet columns = {};          ///< of things that move without a box: all but the ground in them
 };
 
 /// The long-term static map: environment points of all scans, one per voxel, without the points of objects

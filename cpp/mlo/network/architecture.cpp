@@ -192,7 +192,7 @@ NetworkArchitecture parse_architecture(std::string_view text) {
     const json node = json::parse(text);
     for (const json& name : node.at("classes")) {
       const std::optional<ObjectClass> known = object_class_from(name.get<std::string>());
-      require(known.has_value(), "unknown class '" + name.get<std::string>() + "'");
+      if (!known) refuse("unknown class '" + name.get<std::string>() + "'");
       architecture.classes.push_back(*known);
     }
     for (const json& size : node.at("mean_sizes_lwh_m")) {

@@ -167,11 +167,10 @@ ConsistencyResult check_consistency(const EgoFeatures& features, const Reference
   // Nothing can gain enough once nearly all agree.
   const auto may_gain = [&] { return best_count + min_gain < num_counted; };
   for (int i = 0; i < config.consistency.iterations && may_gain(); i += config.consistency.match_interval) {
-    const SE3 T_matched = T_best;
-    const CountedMatches matches = check.match(T_matched);
+    const CountedMatches matches = check.match(T_best);
     std::vector<SE3> motions(static_cast<std::size_t>(
         std::min(config.consistency.match_interval, config.consistency.iterations - i)));
-    for (SE3& motion : motions) motion = check.sample_motion(matches, T_matched, random);
+    for (SE3& motion : motions) motion = check.sample_motion(matches, T_best, random);
     std::vector<Counts> counts(motions.size());
     parallel_for_each_index(motions.size(), [&](std::size_t k) { counts[k] = check.count(motions[k]); });
     for (std::size_t k = 0; k < motions.size() && may_gain(); ++k) judge(motions[k], counts[k]);

@@ -65,7 +65,9 @@ class CircleGrid {
   Eigen::Array2i cell_of(const Eigen::Vector2f& p) const {
     return ((p.array() - low_) * inverse_side_).cast<int>();
   }
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * across_.x() + x); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(across_.x()) + static_cast<std::size_t>(x);
+  }
   void add(const Circle& circle, std::uint16_t k) {
     const Eigen::Vector2f reach = Eigen::Vector2f::Constant(circle.radius);
     const Eigen::Array2i first = cell_of(circle.center - reach);
