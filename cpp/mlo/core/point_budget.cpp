@@ -24,13 +24,6 @@ Indices finite_points(std::span<const Point> points) {
   return indices;
 }
 
-void shuffle(Indices& indices, std::uint64_t seed) {
-  Random random(seed);
-  for (std::size_t left = indices.size(); left > 1; --left) {
-    std::swap(indices[left - 1], indices[random.bits() % left]);
-  }
-}
-
 /// What is in `all` and not in its subsequence `part`.
 Indices without(const Indices& all, const Indices& part) {
   Indices rest;

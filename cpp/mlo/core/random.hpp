@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace mlo {
 
@@ -29,5 +32,12 @@ class Random {
  private:
   std::uint64_t state_;
 };
+
+/// Puts values into an order that depends on how many there are and on the seed alone.
+template <class T>
+void shuffle(std::vector<T>& values, std::uint64_t seed) {
+  Random random(seed);
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.bits() % i]);
+}
 
 }  // namespace mlo

@@ -14,13 +14,6 @@ constexpr std::uint64_t kShuffleSeed = 17;
 
 }  // namespace
 
-void shuffle_points(std::vector<Point>& points, std::uint64_t seed) {
-  Random random(seed);
-  for (std::size_t i = points.size(); i > 1; --i) {
-    std::swap(points[i - 1], points[random.bits() % i]);
-  }
-}
-
 std::vector<Point> network_points(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
                                   const NetworkFrame& frame, const NetworkInputSpec& spec) {
   const auto max_range_m = static_cast<float>(spec.max_range_m);
@@ -37,7 +30,7 @@ std::vector<Point> network_points(std::span<const Point> points, std::span<const
     if (height_m >= spec.min_height_m && height_m <= spec.max_height_m) taken.push_back(point);
   }
   taken = thin_points(taken, static_cast<std::size_t>(spec.max_points));
-  shuffle_points(taken, kShuffleSeed);
+  shuffle(taken, kShuffleSeed);
   return taken;
 }
 

@@ -41,9 +41,6 @@ class NetworkFrame {
 std::vector<Point> network_points(std::span<const Point> points, std::span<const std::uint8_t> is_ground,
                                   const NetworkFrame& frame, const NetworkInputSpec& spec);
 
-/// Puts points in an order that looks random, the same for the same seed.
-void shuffle_points(std::vector<Point>& points, std::uint64_t seed);
-
 /// @param points  in the network's frame
 NetworkInput network_input(std::span<const Point> points, const NetworkInputSpec& spec);
 

@@ -82,8 +82,7 @@ std::vector<TrainingExample> load(const Selection& selection, const NetworkInput
 std::vector<std::size_t> shuffled_order(std::size_t count, std::uint64_t seed) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  Random random(seed);
-  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.bits() % i]);
+  shuffle(order, seed);
   return order;
 }
 
@@ -258,7 +257,7 @@ class Training {
       const TrainingExample& example = examples_[order[number % examples_.size()]];
       TrainingExample changed =
           augment(example, bank_, config_.augmentation, mix(mix(seed, kAugmentationStream), number));
-      shuffle_points(changed.points, number);
+      shuffle(changed.points, number);
       batch[k] = make_batch_example(changed.points, target_boxes(changed, architecture_), architecture_);
     });
     return batch;

@@ -32,12 +32,8 @@ struct TrainingExample {
 /// True if a point of the lidar frame is seen in the image.
 bool shows(const LabelledView& view, const Eigen::Vector3d& p_lidar);
 
-/// Box3d::contains, quick where points are far away, as most of a scan's are.
 inline bool is_within(const Point& point, const Box3d& box) {
-  const Eigen::Vector3d p_lidar = point.p_lidar.cast<double>();
-  const double reach2_m2 = 0.25 * box.size_lwh_m.head<2>().squaredNorm();
-  const double apart2_m2 = (p_lidar - box.center_lidar_m).head<2>().squaredNorm();
-  return apart2_m2 <= reach2_m2 * (1.0 + 1e-9) && box.contains(p_lidar);
+  return box.contains(point.p_lidar.cast<double>());
 }
 
 /// Number of points within a box.
