@@ -17,12 +17,9 @@ constexpr int kCompressionLevel = 1;
 struct Content {
   std::string owner;
   std::uint64_t size = 0;  // of the state
-  std::uint32_t checksum = 0;
   std::string compressed;
 
-  static void archive(auto& self, auto& bytes) {
-    bytes(self.owner, self.size, self.checksum, self.compressed);
-  }
+  static void archive(auto& self, auto& bytes) { bytes(self.owner, self.size, self.compressed); }
 };
 
 // The first lines in which two texts differ.
@@ -41,11 +38,14 @@ std::pair<std::string, std::string> difference(std::string_view a, std::string_v
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& file, const std::string& owner, const std::string& state) {
-  ArchiveWriter bytes;
-  bytes(Content{owner, state.size(), crc32(state), compress(state, kCompressionLevel)});
+  ArchiveWriter content;
+  content(Content{owner, state.size(), compress(state, kCompressionLevel)});
+  ArchiveWriter checksum;
+  checksum(crc32(content.bytes()));
   AtomicFile whole(file);
   whole.write(kMagic);
-  whole.write(bytes.bytes());
+  whole.write(checksum.bytes());
+  whole.write(content.bytes());
   whole.commit();
 }
 
@@ -56,15 +56,18 @@ std::optional<std::string> read_checkpoint(const std::filesystem::path& file, co
     throw InputError(fmt::format("{}: {}; run again without --resume", file.string(), problem));
   };
   if (!bytes.starts_with(kMagic)) fail("is no state of a run");
+  std::string_view stored = std::string_view(bytes).substr(kMagic.size());
+  std::uint32_t checksum = 0;
+  ArchiveReader(stored, file.string())(checksum);
+  stored.remove_prefix(sizeof(checksum));
+  if (crc32(stored) != checksum) fail("is damaged: its checksum is wrong");
   Content content;
-  ArchiveReader(std::string_view(bytes).substr(kMagic.size()), file.string())(content);
+  ArchiveReader(stored, file.string())(content);
   if (content.owner != owner) {
     const auto [then, now] = difference(content.owner, owner);
     fail(fmt::format("belongs to another run: it has '{}', this one '{}'", then, now));
   }
-  std::string state = decompress(content.compressed, content.size, file.string());
-  if (crc32(state) != content.checksum) fail("is damaged: its checksum is wrong");
-  return state;
+  return decompress(content.compressed, content.size, file.string());
 }
 
 }  // namespace mlo
