@@ -16,9 +16,7 @@
 namespace mlo::apps {
 namespace {
 
-using simulator::DetectorErrors;
 using simulator::Layout;
-using simulator::LidarErrors;
 using simulator::SceneKind;
 using simulator::SimulationOptions;
 using simulator::SimulationReport;

@@ -11,7 +11,8 @@ namespace {
 std::vector<ObjectPoints> parked_cars(std::size_t count) {
   std::vector<ObjectPoints> objects;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x_m = 8.0 + 8.0 * static_cast<double>(i / 2);
+    const std::size_t row = i / 2;
+    const double x_m = 8.0 + 8.0 * static_cast<double>(row);
     const double y_m = i % 2 == 0 ? 4.0 : -4.0;
     ObjectPoints object;
     object.detection = test::car(x_m, y_m);

@@ -2,8 +2,8 @@
 
 #include "detection/made_scan.hpp"
 #include "mlo/core/box_overlap.hpp"
-#include "mlo/detection/detect.hpp"
 #include "mlo/core/log_odds.hpp"
+#include "mlo/detection/detect.hpp"
 
 namespace mlo {
 namespace {

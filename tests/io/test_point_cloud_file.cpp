@@ -145,10 +145,10 @@ std::string ply_of_times(const std::string& type, const std::string& lines) {
 TEST(PointCloudFile, ReadsWindowsLineEndsOddTypesAndSkipsWideFields) {
   const PointCloudFile cloud =
       read_cloud_text("a.pcd",
-                "# comment\r\nVERSION .7\r\nFIELDS histogram z y x channel reflectivity\r\n"
-                "SIZE 4 2 8 4 1 2\r\nTYPE F I F I U U\r\nCOUNT 3 1 1 1 1 1\r\nWIDTH 2\r\n"
-                "HEIGHT 1\r\nDATA ascii\r\n9 9 9 -3 2.5 1 7 40000\r\n\r\n"
-                "9 9 9 -6 +5.5 4 255 1\r\n");
+                      "# comment\r\nVERSION .7\r\nFIELDS histogram z y x channel reflectivity\r\n"
+                      "SIZE 4 2 8 4 1 2\r\nTYPE F I F I U U\r\nCOUNT 3 1 1 1 1 1\r\nWIDTH 2\r\n"
+                      "HEIGHT 1\r\nDATA ascii\r\n9 9 9 -3 2.5 1 7 40000\r\n\r\n"
+                      "9 9 9 -6 +5.5 4 255 1\r\n");
   ASSERT_EQ(cloud.points.size(), 2U);
   EXPECT_EQ(cloud.points[0].p_lidar, Eigen::Vector3f(1.0F, 2.5F, -3.0F));
   EXPECT_EQ(cloud.points[1].p_lidar, Eigen::Vector3f(4.0F, 5.5F, -6.0F));
@@ -183,7 +183,8 @@ TEST(PointCloudFile, LeavesOutAndCountsWhatIsNotANumber) {
 
 TEST(PointCloudFile, RecognisesTheUnitOfTimes) {
   const auto unit_s = [](const std::string& type, const std::string& first, const std::string& last) {
-    return read_cloud_text("a.ply", ply_of_times(type, "1 2 3 " + first + "\n1 2 3 " + last + "\n")).time_unit_s;
+    return read_cloud_text("a.ply", ply_of_times(type, "1 2 3 " + first + "\n1 2 3 " + last + "\n"))
+        .time_unit_s;
   };
   EXPECT_EQ(unit_s("float", "-0.1", "0"), 1.0);
   EXPECT_EQ(unit_s("double", "1700000000.00", "1700000000.05"), 1.0);

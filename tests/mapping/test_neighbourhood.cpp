@@ -16,8 +16,8 @@ NearestPoints neighbours(const std::vector<Eigen::Vector3f>& points) {
 /// On the plane z = 0.1 x + 2.
 NearestPoints plane() {
   std::vector<Eigen::Vector3f> points;
-  for (const float x : {0.0F, 0.3F, 0.6F}) {
-    for (const float y : {0.0F, 0.25F, 0.5F}) points.emplace_back(x, y, 0.1F * x + 2.0F);
+  for (const float x : {0.0F, 0.2F, 0.4F, 0.6F}) {
+    for (const float y : {0.0F, 0.5F}) points.emplace_back(x, y, 0.1F * x + 2.0F);
   }
   return neighbours(points);
 }

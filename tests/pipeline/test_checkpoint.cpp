@@ -27,7 +27,9 @@ TEST_F(Checkpoint, GivesTheStateBack) {
   EXPECT_EQ(read_checkpoint(file(), "owner"), state);
 }
 
-TEST_F(Checkpoint, WithoutAFileThereIsNone) { EXPECT_EQ(read_checkpoint(file(), "owner"), std::nullopt); }
+TEST_F(Checkpoint, WithoutAFileThereIsNone) {
+  EXPECT_EQ(read_checkpoint(file(), "owner"), std::nullopt);
+}
 
 TEST_F(Checkpoint, OfAnotherOwnerNamesTheFirstLineThatDiffers) {
   write_checkpoint(file(), "a: 1\nb: 2\n", "state");
@@ -39,7 +41,8 @@ TEST_F(Checkpoint, OfAnotherOwnerNamesTheFirstLineThatDiffers) {
   }
 }
 
-// Some bits of compressed data mean nothing: damage there leaves the state as it was, and is found all the same.
+// Some bits of compressed data mean nothing: damage there leaves the state as it was, and is found all the
+// same.
 TEST_F(Checkpoint, AnyFlippedBitAndAnyMissingByteIsDamage) {
   std::string state;
   for (int i = 0; i < 100; ++i) state += fmt::format("{} and {};", i, i * i % 37);

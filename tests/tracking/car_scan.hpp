@@ -33,7 +33,7 @@ inline std::vector<Eigen::Vector3d> seen_from_lidar(const SE3& L_lidar_object, d
   std::normal_distribution<double> normal(0.0, noise_m);
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3d& p : car_surface()) {
-    points.push_back(L_lidar_object * p + Eigen::Vector3d(normal(random), normal(random), normal(random)));
+    points.emplace_back(L_lidar_object * p + Eigen::Vector3d(normal(random), normal(random), normal(random)));
   }
   return points;
 }

@@ -13,7 +13,6 @@ using test::kDegree;
 using test::kDt_s;
 using test::placed_car;
 
-
 BoxMeasurement measured(const PlacedBox& box) {
   return {.box = box,
           .along_sd_m = 0.1,

@@ -33,7 +33,7 @@ Polygon clipped(const Polygon& polygon, const Eigen::Vector2d& normal, double li
     const double q_beyond = normal.dot(q) - limit;
     if (p_beyond <= 0.0) result.push_back(p);
     if ((p_beyond < 0.0 && q_beyond > 0.0) || (p_beyond > 0.0 && q_beyond < 0.0)) {
-      result.push_back(p + (q - p) * (p_beyond / (p_beyond - q_beyond)));
+      result.emplace_back(p + (q - p) * (p_beyond / (p_beyond - q_beyond)));
     }
   }
   return result;
@@ -60,7 +60,7 @@ double footprint_intersection(const Box3d& a, const Box3d& b) {
       Eigen::Rotation2Dd(-a.yaw_rad) * (b.center_lidar_m - a.center_lidar_m).head<2>().eval();
   Polygon outline;
   for (const auto& [x, y] : {std::pair{0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}, {0.5, -0.5}}) {
-    outline.push_back(center + R_ab * Eigen::Vector2d(x * b.size_lwh_m.x(), y * b.size_lwh_m.y()));
+    outline.emplace_back(center + R_ab * Eigen::Vector2d(x * b.size_lwh_m.x(), y * b.size_lwh_m.y()));
   }
   for (int axis = 0; axis < 2; ++axis) {
     outline = clipped(outline, Eigen::Vector2d::Unit(axis), half(axis));

@@ -13,11 +13,16 @@ enum class EstimateStatus { not_run, converged, max_iterations, degenerate, too_
 
 constexpr std::string_view to_string(EstimateStatus status) {
   switch (status) {
-    case EstimateStatus::converged: return "converged";
-    case EstimateStatus::max_iterations: return "max_iterations";
-    case EstimateStatus::degenerate: return "degenerate";
-    case EstimateStatus::too_few_matches: return "too_few_matches";
-    case EstimateStatus::not_run: break;
+    case EstimateStatus::converged:
+      return "converged";
+    case EstimateStatus::max_iterations:
+      return "max_iterations";
+    case EstimateStatus::degenerate:
+      return "degenerate";
+    case EstimateStatus::too_few_matches:
+      return "too_few_matches";
+    case EstimateStatus::not_run:
+      break;
   }
   return "not_run";
 }
@@ -26,8 +31,8 @@ constexpr std::string_view to_string(EstimateStatus status) {
 struct PoseEstimate {
   SE3 T_target_source;
   EstimateStatus status = EstimateStatus::not_run;
-  /// Of a perturbation [translation; rotation] ([m], [rad]) at the source frame's own origin, with the axes of
-  /// the target frame.
+  /// Of a perturbation [translation; rotation] ([m], [rad]) at the source frame's own origin, with the axes
+  /// of the target frame.
   NormalEquations::Matrix6d covariance = NormalEquations::Matrix6d::Zero();
   int degenerate_directions = 0;
   std::size_t num_matches = 0;

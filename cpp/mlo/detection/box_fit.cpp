@@ -39,7 +39,7 @@ float closeness(const Eigen::Array2Xf& points, double yaw_rad) {
 
 FittedRectangle fit_rectangle(std::span<const Eigen::Vector2f> points) {
   // about the first one, so that single precision suffices
-  const Eigen::Vector2f origin = points.front();
+  const Eigen::Vector2f& origin = points.front();
   Eigen::Array2Xf local(2, static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     local.col(static_cast<Eigen::Index>(i)) = (points[i] - origin).array();

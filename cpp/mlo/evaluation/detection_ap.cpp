@@ -192,7 +192,8 @@ AveragePrecision average_precision(std::span<const DetectionFrame> frames, const
   const std::vector<double> levels = thresholds(all.confidences, result.num_truth);
   for (std::size_t i = 0; i < std::min(levels.size(), precision.size()); ++i) {
     const Counts counts = count(prepared, protocol.min_overlap, levels[i], Prefer::overlap);
-    precision[i] = ratio(static_cast<double>(counts.true_positives), counts.true_positives + counts.false_positives);
+    precision[i] =
+        ratio(static_cast<double>(counts.true_positives), counts.true_positives + counts.false_positives);
   }
   for (std::size_t i = kPoints; i > 0; --i) precision[i - 1] = std::max(precision[i - 1], precision[i]);
   std::copy(precision.begin() + 1, precision.end(), result.precision.begin());

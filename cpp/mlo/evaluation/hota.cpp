@@ -9,7 +9,6 @@
 namespace mlo {
 namespace {
 
-
 using Index = Eigen::Index;
 using Matrices = std::array<Eigen::MatrixXd, kNumHotaThresholds>;
 

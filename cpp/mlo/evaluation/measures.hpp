@@ -13,8 +13,8 @@ inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Similarities are compared with this tolerance, as TrackEval does.
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// An object is mostly tracked when it is in more than the one share of its frames, mostly lost below the other
-/// (Li et al., CVPR 2009).
+/// An object is mostly tracked when it is in more than the one share of its frames, mostly lost below the
+/// other (Li et al., CVPR 2009).
 inline constexpr double kMostlyTracked = 0.8;
 inline constexpr double kMostlyLost = 0.2;
 

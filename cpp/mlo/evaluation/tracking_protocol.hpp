@@ -47,7 +47,8 @@ struct TrackingSequence {
   std::size_t num_track_boxes = 0;
 };
 
-/// Types that KITTI's protocols do not tell apart from a class reliably: neither demanded nor held against it.
+/// Types that KITTI's protocols do not tell apart from a class reliably: neither demanded nor held against
+/// it.
 std::vector<std::string> neighbors_of(const std::string& object_class);
 
 double similarity_of(const ObjectRecord& a, const ObjectRecord& b, const TrackingProtocol& protocol);

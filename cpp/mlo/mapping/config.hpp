@@ -68,7 +68,7 @@ struct RefinementConfig {
     visit("source_voxel_m", source_voxel_m, between(0.05, 10.0),
           "the scan is thinned to one point per voxel, the ground apart from the rest: accuracy against time "
           "[m]");
-    visit("neighbours", neighbours, between(5, 20), "map points that make a neighbourhood");
+    visit("neighbours", neighbours, between(5, 8), "map points that make a neighbourhood");
     visit("max_thickness_m", max_thickness_m, between(0.001, 10.0),
           "a neighbourhood thicker than this (standard deviation) is no plane [m]");
     visit("max_flatness", max_flatness, between(0.0, 1.0),

@@ -2,74 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+
+#include "mlo/mapping/voxel_search.hpp"
 
 namespace mlo {
 namespace {
 
 // The map is searched for what to forget each time the robot has moved by this share of the radius.
 constexpr double kForgetEvery = 0.05;
-
-constexpr double kStepsPerVoxel = 65536.0;
-
-struct Offset {
-  int x, y, z;
-};
-
-// The 27 voxels around a query, by their number of steps: near ones first, so that the others are often
-// farther than the k points already found.
-constexpr std::array<Offset, 27> neighbour_offsets() {
-  std::array<Offset, 27> offsets{};
-  std::size_t n = 0;
-  for (int steps = 0; steps <= 3; ++steps) {
-    for (int x = -1; x <= 1; ++x) {
-      for (int y = -1; y <= 1; ++y) {
-        for (int z = -1; z <= 1; ++z) {
-          if (x * x + y * y + z * z == steps) offsets[n++] = {x, y, z};
-        }
-      }
-    }
-  }
-  return offsets;
-}
-constexpr std::array<Offset, 27> kNeighbours = neighbour_offsets();
-
-// Of these, the centre and the six that share a face with it.
-constexpr std::size_t kAlwaysLoaded = 7;
-
-Eigen::Vector3f in_steps(const Offset& offset) {
-  return Eigen::Vector3i(offset.x, offset.y, offset.z).cast<float>() * static_cast<float>(kStepsPerVoxel);
-}
-
-// From a place, in steps from the middle of a voxel, to the voxel.
-float squared_distance_to_voxel(const Eigen::Vector3f& p) {
-  return (p.array().abs() - static_cast<float>(0.5 * kStepsPerVoxel)).max(0.0F).matrix().squaredNorm();
-}
-
-// The k nearest so far, nearest first, by where to find them.
-struct NearestPlaces {
-  struct Place {
-    float squared_distance;
-    std::uint16_t offset;  // in kNeighbours
-    std::uint16_t point;   // in the voxel
-  };
-
-  explicit NearestPlaces(int k) : max_count(k) {}
-  float worst() const {
-    return count < max_count ? std::numeric_limits<float>::max()
-                             : places[static_cast<std::size_t>(count - 1)].squared_distance;
-  }
-  /// @param place  nearer than worst()
-  void add(const Place& place) {
-    auto i = static_cast<std::size_t>(count < max_count ? count++ : count - 1);
-    for (; i > 0 && places[i - 1].squared_distance > place.squared_distance; --i) places[i] = places[i - 1];
-    places[i] = place;
-  }
-
-  int max_count;
-  int count = 0;
-  std::array<Place, NearestPoints::kMax> places;
-};
 
 }  // namespace
 
@@ -83,13 +25,13 @@ Eigen::Vector3f LocalMap::middle(const VoxelKey& key) const {
          static_cast<float>(config_.voxel_m);
 }
 
-inline std::array<float, NearestPoints::kMax> LocalMap::Voxel::squared_distances(
+inline std::array<float, LocalMap::Voxel::kLanes> LocalMap::Voxel::squared_distances(
     const Eigen::Vector3f& p) const {
-  std::array<float, NearestPoints::kMax> distances2;
-  for (std::size_t i = 0; i < distances2.size(); ++i) {
-    const float dx = static_cast<float>(x[i]) - p.x();
-    const float dy = static_cast<float>(y[i]) - p.y();
-    const float dz = static_cast<float>(z[i]) - p.z();
+  std::array<float, kLanes> distances2;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const float dx = static_cast<float>(data[i]) - p.x();
+    const float dy = static_cast<float>(data[kMaxPoints + i]) - p.y();
+    const float dz = static_cast<float>(data[2 * kMaxPoints + i]) - p.z();
     distances2[i] = dx * dx + dy * dy + dz * dz;
   }
   return distances2;
@@ -112,10 +54,10 @@ std::vector<std::uint8_t> LocalMap::insert(std::span<const Eigen::Vector3f> poin
     std::uint32_t& place = block->at(key);
     if (place == VoxelBlock::kNone) place = take_voxel();
     Voxel& home = voxel(place);
-    if (home.count >= config_.max_points_per_voxel) continue;
+    if (home.count() >= static_cast<std::size_t>(config_.max_points_per_voxel)) continue;
     const Eigen::Vector3f steps = (p - middle(key)) / step_m_;
     const auto distances2 = home.squared_distances(steps);
-    const auto end = distances2.begin() + home.count;
+    const auto end = std::next(distances2.begin(), static_cast<std::ptrdiff_t>(home.count()));
     if (std::any_of(distances2.begin(), end, [&](float d2) { return d2 < spacing2; })) continue;
     home.push_back(steps);
     added[i] = 1;
@@ -129,15 +71,15 @@ void LocalMap::Voxel::push_back(const Eigen::Vector3f& p) {
     constexpr float highest = std::numeric_limits<std::int16_t>::max();
     return static_cast<std::int16_t>(std::lround(std::clamp(steps, lowest, highest)));
   };
-  x[count] = rounded(p.x());
-  y[count] = rounded(p.y());
-  z[count] = rounded(p.z());
-  ++count;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    data[axis * kMaxPoints + count()] = rounded(p(static_cast<Eigen::Index>(axis)));
+  }
+  ++data[3 * kMaxPoints];
 }
 
-Eigen::Vector3f LocalMap::Voxel::point(int i) const {
-  const auto k = static_cast<std::size_t>(i);
-  return Eigen::Matrix<std::int16_t, 3, 1>(x[k], y[k], z[k]).cast<float>();
+Eigen::Vector3f LocalMap::Voxel::point(std::size_t i) const {
+  return Eigen::Matrix<std::int16_t, 3, 1>(data[i], data[kMaxPoints + i], data[2 * kMaxPoints + i])
+      .cast<float>();
 }
 
 std::uint32_t LocalMap::take_voxel() {
@@ -179,7 +121,7 @@ bool LocalMap::forget_beyond(const VoxelKey& block_key, VoxelBlock& block, const
           is_empty = false;
           continue;
         }
-        voxel(place).count = 0;
+        voxel(place).clear();
         free_.push_back(place);
         place = VoxelBlock::kNone;
         --num_voxels_;
@@ -196,8 +138,8 @@ class LocalMap::Neighbourhood {
       : map_(map), center_(center), center_block_(VoxelBlock::key_of(center)) {}
 
   /// The voxel some steps (-1, 0 or 1 along each axis) from the centre, if it exists.
-  const Voxel* find(const Offset& step) {
-    const VoxelKey key{center_.x + step.x, center_.y + step.y, center_.z + step.z};
+  const Voxel* find(const Eigen::Vector3i& step) {
+    const VoxelKey key{center_.x + step.x(), center_.y + step.y(), center_.z + step.z()};
     const VoxelBlock* block = find_block(VoxelBlock::key_of(key));
     if (block == nullptr) return nullptr;
     const std::uint32_t place = block->at(key);
@@ -228,38 +170,37 @@ class LocalMap::Neighbourhood {
 NearestPoints LocalMap::nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const {
   const VoxelKey key = voxel_key(query_map, inverse_voxel_);
   const Eigen::Vector3f query = (query_map - middle(key)) / step_m_;
+  const InVoxel in_voxel(query);
   Neighbourhood around(*this, key);
-  NearestPlaces nearest(k);
+  SmallestKeys nearest;
   std::array<const Voxel*, kNeighbours.size()> voxels;
-  for (std::size_t n = 0; n < kAlwaysLoaded; ++n) {
-    voxels[n] = around.find(kNeighbours[n]);
+  for (std::size_t n = 0; n < kNear; ++n) {
+    voxels[n] = around.find(in_voxel.voxels_to(kNeighbours[n]));
     if (voxels[n] != nullptr) voxels[n]->prefetch();
   }
+  float worst = NearKey::squared_distance_bound(nearest[k - 1]);
   for (std::size_t n = 0; n < kNeighbours.size(); ++n) {
-    const Eigen::Vector3f from_middle = query - in_steps(kNeighbours[n]);
-    if (squared_distance_to_voxel(from_middle) >= nearest.worst()) continue;
-    if (n >= kAlwaysLoaded) voxels[n] = around.find(kNeighbours[n]);
+    if (n == kNear && in_voxel.squared_distance_to_others() >= worst) break;
+    if (in_voxel.squared_distance_to(kNeighbours[n]) >= worst) continue;
+    if (n >= kNear) voxels[n] = around.find(in_voxel.voxels_to(kNeighbours[n]));
     if (voxels[n] == nullptr) continue;
-    const auto distances2 = voxels[n]->squared_distances(from_middle);
-    float worst = nearest.worst();
-    for (std::uint16_t i = 0; i < voxels[n]->count; ++i) {
-      if (distances2[i] >= worst) continue;
-      nearest.add({distances2[i], static_cast<std::uint16_t>(n), i});
-      worst = nearest.worst();
-    }
+    const auto distances2 = voxels[n]->squared_distances(in_voxel.from_middle_of(kNeighbours[n]));
+    std::array<std::int32_t, Voxel::kLanes> keys;
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = NearKey::of(distances2[i], n, i);
+    for (std::size_t i = 0; i < voxels[n]->count(); ++i) nearest.add(keys[i]);
+    worst = NearKey::squared_distance_bound(nearest[k - 1]);
   }
 
   NearestPoints result;
-  const float gate = gate_m / step_m_;
-  if (nearest.count == 0 || nearest.places[0].squared_distance > gate * gate) return result;
-  result.count = nearest.count;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(result.count); ++i) {
-    const NearestPlaces::Place& place = nearest.places[i];
-    const Eigen::Vector3f steps =
-        in_steps(kNeighbours[place.offset]) + voxels[place.offset]->point(place.point);
-    result.points[i] = middle(key) + steps * step_m_;
-    result.squared_distances_m2[i] = place.squared_distance * step_m_ * step_m_;
+  for (int i = 0; i < k && nearest[i] != NearKey::kNone; ++i) {
+    const std::size_t n = NearKey::neighbour(nearest[i]);
+    const Eigen::Vector3f to_point =
+        (voxels[n]->point(NearKey::point(nearest[i])) - in_voxel.from_middle_of(kNeighbours[n])) * step_m_;
+    const auto place = static_cast<std::size_t>(result.count++);
+    result.points[place] = query_map + to_point;
+    result.squared_distances_m2[place] = to_point.squaredNorm();
   }
+  if (result.count > 0 && result.squared_distances_m2[0] > gate_m * gate_m) result.count = 0;
   return result;
 }
 

@@ -15,13 +15,13 @@ namespace mlo {
 
 /// The nearest map points of a query, nearest first; fixed storage, as it is filled millions of times.
 struct NearestPoints {
-  static constexpr int kMax = 20;
+  static constexpr int kMax = 8;  // as a search keeps its best in one register
   std::array<Eigen::Vector3f, kMax> points;
   std::array<float, kMax> squared_distances_m2;
   int count = 0;
 };
 
-/// Points around the robot in a voxel hash, each to 1/65536 of a voxel; memory is bounded by
+/// Points around the robot in a voxel hash, each to 1/256 of a voxel; memory is bounded by
 /// forget_beyond_radius().
 class LocalMap {
  public:
@@ -36,7 +36,8 @@ class LocalMap {
   void forget_beyond_radius(const Eigen::Vector3f& center_map);
 
   /// The k nearest points within the query's voxel and its 26 neighbours; none if even the nearest is beyond
-  /// gate_m. The query must be finite.
+  /// gate_m. Of points whose squared distances differ by less than 1/8000, either may be taken for the
+  /// nearer. The query must be finite.
   /// @param k  in [1, NearestPoints::kMax]
   NearestPoints nearest(const Eigen::Vector3f& query_map, int k, float gate_m) const;
 
@@ -50,24 +51,24 @@ class LocalMap {
   }
 
  private:
-  // Two cache lines, as a search is bound by memory: coordinates in 1/65536 of the voxel's side from its
-  // middle. They are apart, so that the distances to all points are computed side by side.
+  // One cache line, as a search is bound by memory.
   struct alignas(64) Voxel {
-    std::array<std::int16_t, NearestPoints::kMax> x;
-    std::array<std::int16_t, NearestPoints::kMax> y;
-    std::array<std::int16_t, NearestPoints::kMax> z;
-    std::uint8_t count = 0;
+    static constexpr std::size_t kMaxPoints = 20;
+    // Distances are computed to so many places, a multiple of eight, side by side; the last are no points.
+    static constexpr std::size_t kLanes = 24;
 
-    /// From a place to each point, both in steps from the voxel's middle; what is beyond count means nothing.
-    [[gnu::always_inline]] std::array<float, NearestPoints::kMax> squared_distances(
-        const Eigen::Vector3f& p) const;
+    // All x, all y, all z, in 1/256 of the voxel's side from its middle; then the number of points.
+    std::array<std::int16_t, 64> data{};
+
+    std::size_t count() const { return static_cast<std::size_t>(data[3 * kMaxPoints]); }
+    /// From a place to each point, both in steps from the voxel's middle; what is beyond count() means
+    /// nothing.
+    [[gnu::always_inline]] std::array<float, kLanes> squared_distances(const Eigen::Vector3f& p) const;
     void push_back(const Eigen::Vector3f& p);
-    Eigen::Vector3f point(int i) const;
-    void prefetch() const {
-      __builtin_prefetch(&x);
-      __builtin_prefetch(&count);
-    }
-    static void archive(auto& self, auto& bytes) { bytes(self.x, self.y, self.z, self.count); }
+    void clear() { data[3 * kMaxPoints] = 0; }
+    Eigen::Vector3f point(std::size_t i) const;
+    void prefetch() const { __builtin_prefetch(data.data()); }
+    static void archive(auto& self, auto& bytes) { bytes(self.data); }
   };
 
   class Neighbourhood;
