@@ -37,6 +37,15 @@ struct Judgement {
   std::optional<MapRemoval> removal;  ///< only with truth
 };
 
+PoseList poses_of_scans(const Dataset& dataset, const Options& options) {
+  if (!options.poses.empty()) return read_trajectory(options.poses);
+  if (!dataset.truth) {
+    throw InputError(
+        fmt::format("{}: has no true poses; give the poses of the run with --poses", options.truth.string()));
+  }
+  return *dataset.truth;
+}
+
 std::vector<LabelledPoint> labels_of_scans(const Options& options) {
   const Dataset dataset = open_dataset(options.truth, options.open);
   const auto labels = find_point_labels(dataset);
@@ -44,12 +53,8 @@ std::vector<LabelledPoint> labels_of_scans(const Options& options) {
     throw InputError(fmt::format("{}: has scans, but no folder labels with a .label file for each of them",
                                  options.truth.string()));
   }
-  if (options.poses.empty() && !dataset.truth) {
-    throw InputError(
-        fmt::format("{}: has no true poses; give the poses of the run with --poses", options.truth.string()));
-  }
-  const PoseList poses = options.poses.empty() ? *dataset.truth : read_trajectory(options.poses);
-  LabelledMap map = build_labelled_map(dataset, *labels, poses, options.truth_voxel_m);
+  LabelledMap map =
+      build_labelled_map(dataset, *labels, poses_of_scans(dataset, options), options.truth_voxel_m);
   for (const std::string& problem : map.problems) spdlog::warn("left out: {}", problem);
   if (map.scans == 0)
     throw InputError(fmt::format("{}: no scan has both labels and a pose", options.truth.string()));

@@ -72,14 +72,15 @@ std::optional<PoseList> lidar_poses(const Options& options, const std::string& s
   if (options.poses.empty()) return std::nullopt;
   PoseList poses = read_kitti_poses(file_of(options.poses, sequence));
   if (options.poses_of == "lidar") return poses;
-  const bool imu = options.poses_of == "imu";
-  if (imu ? !calibration.T_imu_lidar : !calibration.T_camera0_lidar) {
+  const std::optional<SE3>& T_pose_lidar =
+      options.poses_of == "imu" ? calibration.T_imu_lidar : calibration.T_camera0_lidar;
+  if (!T_pose_lidar) {
     throw InputError(
         fmt::format("{}: poses of the {} need its calibration to the lidar; give --calib, or poses of the "
                     "lidar with --poses-of lidar",
                     options.poses.string(), options.poses_of));
   }
-  return rebased(std::move(poses), imu ? *calibration.T_imu_lidar : *calibration.T_camera0_lidar);
+  return rebased(std::move(poses), *T_pose_lidar);
 }
 
 std::optional<CameraView> camera_view(const Options& options, const Calibration& calibration) {

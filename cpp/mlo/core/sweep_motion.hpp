@@ -48,6 +48,8 @@ class SweepMotion {
     return moved(p_lidar, reference_fraction_ - sweep_fraction);
   }
 
+  /// Nothing moves: points stay where they were measured.
+  bool is_still() const { return is_still_; }
   double reference_fraction() const { return reference_fraction_; }
 
   static void archive(auto& self, auto& bytes) {

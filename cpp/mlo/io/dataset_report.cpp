@@ -242,9 +242,10 @@ DetectionReport report_on_detections(const Dataset& dataset, const DetectionList
                           [&](std::size_t k) { readings[k] = dataset.scans->read(with_boxes[places[k]]); });
   std::vector<ScanWithDetections> scans;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    if (!readings[k].scan) continue;
+    const std::optional<Scan>& read = readings[k].scan;
+    if (!read) continue;
     ScanWithDetections& scan = scans.emplace_back();
-    scan.points = readings[k].scan->points;
+    scan.points = read->points;
     for (const DetectionRecord& record : boxes_of(with_boxes[places[k]])) {
       scan.detections.push_back(record.detection);
     }

@@ -93,9 +93,9 @@ ParsedDetection parse_row(const Cells& cells, const RowLayout& layout, std::opti
 }  // namespace
 
 bool is_file_per_frame(std::string_view text) {
-  for (auto line = line_at(text, 0); line; line = line_at(text, line->next_offset)) {
-    if (is_blank(line->text)) continue;
-    const RowLayout* const layout = recognise(line->text);
+  for (const std::string_view line : split_lines(text)) {
+    if (is_blank(line)) continue;
+    const RowLayout* const layout = recognise(line);
     return layout != nullptr && layout->frame == kNone;
   }
   return false;
@@ -107,10 +107,10 @@ std::vector<ParsedDetection> parse_kitti_detections(const std::filesystem::path&
   std::vector<ParsedDetection> detections;
   const RowLayout* layout = nullptr;
   Place place{path, 0};
-  for (auto line = line_at(text, 0); line; line = line_at(text, line->next_offset)) {
+  for (const std::string_view line : split_lines(text)) {
     ++place.line;
-    if (is_blank(line->text)) continue;
-    if (layout == nullptr) layout = recognise(line->text);
+    if (is_blank(line)) continue;
+    if (layout == nullptr) layout = recognise(line);
     if (layout == nullptr) {
       place.fail("the format of these detections is not known", "see docs/detections.md for those that are");
     }
@@ -118,7 +118,7 @@ std::vector<ParsedDetection> parse_kitti_detections(const std::filesystem::path&
       place.fail("these boxes are in the camera's frame, and the data has no calibration",
                  "put KITTI's calibration beside the scans, or write the boxes in the lidar's frame");
     }
-    const Cells cells = split(line->text, layout->separator);
+    const Cells cells = split(line, layout->separator);
     if (cells.size() != layout->columns) {
       place.fail(fmt::format("has {} values, a {} row has {}", cells.size(), layout->name, layout->columns),
                  "write the line again");

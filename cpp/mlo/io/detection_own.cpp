@@ -59,7 +59,7 @@ ParsedDetection parse_csv_row(const std::vector<std::string_view>& cells, const 
     parsed.frame = parse_count(cells[*columns.frame]);
     if (!parsed.frame)
       place.fail(fmt::format("'{}' is no frame", cells[*columns.frame]), "number frames from 0");
-  } else {
+  } else if (columns.stamp_s) {
     parsed.stamp_s = parse_finite(cells[*columns.stamp_s], "stamp_s", place);
   }
   std::array<double, kBoxColumns.size()> box{};
@@ -135,14 +135,14 @@ std::vector<ParsedDetection> parse_csv_detections(const std::filesystem::path& p
   std::vector<ParsedDetection> detections;
   std::optional<CsvColumns> columns;
   Place place{path, 0};
-  for (auto line = line_at(text, 0); line; line = line_at(text, line->next_offset)) {
+  for (const std::string_view line : split_lines(text)) {
     ++place.line;
-    if (is_blank(line->text)) continue;
+    if (is_blank(line)) continue;
     if (!columns) {
-      columns = find_columns(line->text, place);
+      columns = find_columns(line, place);
       continue;
     }
-    const std::vector<std::string_view> cells = split_cells(line->text);
+    const std::vector<std::string_view> cells = split_cells(line);
     if (cells.size() != columns->count) {
       place.fail(fmt::format("has {} values for {} columns", cells.size(), columns->count),
                  "write the line again");

@@ -65,7 +65,7 @@ Polygon cut(const Polygon& polygon, const HalfSpace& half_space) {
     const double side_a = half_space.side(a);
     const double side_b = half_space.side(b);
     if (side_a >= 0.0) kept.push_back(a);
-    if ((side_a >= 0.0) != (side_b >= 0.0)) kept.push_back(a + side_a / (side_a - side_b) * (b - a));
+    if ((side_a >= 0.0) != (side_b >= 0.0)) kept.emplace_back(a + side_a / (side_a - side_b) * (b - a));
   }
   return kept;
 }
@@ -115,7 +115,7 @@ std::optional<Box2d> project_box(const KittiBox& box, const Eigen::Matrix<double
   Eigen::Array2d max_px = -min_px;
   for (const std::array<std::size_t, 4>& face : kFaces) {
     Polygon polygon;
-    for (const std::size_t i : face) polygon.push_back(P2 * corners[i].homogeneous());
+    for (const std::size_t i : face) polygon.emplace_back(P2 * corners[i].homogeneous());
     for (const HalfSpace& half_space : view_pyramid(last_px)) polygon = cut(polygon, half_space);
     for (const Eigen::Vector3d& q : polygon) {
       min_px = min_px.min(q.head<2>().array() / q.z());

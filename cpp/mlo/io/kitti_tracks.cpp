@@ -108,7 +108,7 @@ std::vector<ObjectRecord> read_kitti_object_labels(const std::filesystem::path& 
     }
     const long id = words[0] == "DontCare" ? -1 : static_cast<long>(i);
     records.push_back(object_record(fmt::format("0 {} {}", id, lines[i]), where));
-    records.back().truncation = truncation_step(*parse_number(words[1]));
+    records.back().truncation = truncation_step(parse_number(words[1]).value_or(0.0));
   }
   return records;
 }

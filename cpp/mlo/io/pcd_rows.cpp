@@ -135,7 +135,7 @@ std::size_t points_of(const Entries& entries, const HeaderError& fail) {
   if (height != 0 && *width > std::numeric_limits<std::uint32_t>::max() / height) {
     fail(entries.at("WIDTH").line, "WIDTH x HEIGHT is too large");
   }
-  if (points.value_or(*width * height) != *width * height) {
+  if (points && *points != *width * height) {
     fail(entries.at("POINTS").line,
          fmt::format("POINTS {} is not WIDTH x HEIGHT, {} x {}", *points, *width, height));
   }
@@ -159,24 +159,25 @@ PcdHeader read_pcd_header(const std::filesystem::path& path, std::string_view by
 /// Compressed points are stored field by field; gives them point by point, as in a binary file.
 std::string decompressed_rows(const std::filesystem::path& path, std::string_view bytes,
                               const PcdHeader& header) {
-  const auto fail = [&](std::string_view problem) {
-    throw InputError(
+  const auto error = [&](std::string_view problem) {
+    return InputError(
         fmt::format("{}: byte {}: {}; the file is damaged or incomplete, copy or convert it again",
                     path.string(), header.data_offset, problem));
   };
   const std::string_view data = bytes.substr(header.data_offset);
-  if (data.size() < kSizesBytes) fail("the sizes of the compressed points are missing");
+  if (data.size() < kSizesBytes) throw error("the sizes of the compressed points are missing");
   const auto size_at = [data](std::size_t offset) {
     return static_cast<std::size_t>(
         load_scalar(data.data() + offset, ScalarType::uint32, std::endian::little));
   };
   const std::size_t compressed_size = size_at(0);
   const std::size_t size = size_at(4);
-  if (compressed_size > data.size() - kSizesBytes) fail("the compressed points are cut off");
-  if (size / kMaxLzfRatio > compressed_size) fail("so few bytes can not hold the points");
-  if (size != header.points * header.row_size()) fail("the size of the points is not that of the header");
+  if (compressed_size > data.size() - kSizesBytes) throw error("the compressed points are cut off");
+  if (size / kMaxLzfRatio > compressed_size) throw error("so few bytes can not hold the points");
+  if (size != header.points * header.row_size())
+    throw error("the size of the points is not that of the header");
   const auto columns = lzf_decompress(data.substr(kSizesBytes, compressed_size), size);
-  if (!columns) fail("the points do not decompress");
+  if (!columns) throw error("the points do not decompress");
 
   std::string rows(size, '\0');
   std::size_t source = 0;

@@ -71,12 +71,11 @@ std::vector<ScanFile> list_scans(const fs::path& folder) {
   const bool uniform = std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
     return file.extension() == extension && parse_count(file.stem().string());
   });
-  if (uniform) {
-    const std::size_t first = *parse_count(files.front().stem().string());
-    const std::size_t last = *parse_count(files.back().stem().string());
-    if (static_cast<double>(files.size()) >= kMostlyThere * static_cast<double>(last - first + 1)) {
-      return list_numbered_scans(folder, extension);
-    }
+  const std::optional<std::size_t> first = parse_count(files.front().stem().string());
+  const std::optional<std::size_t> last = parse_count(files.back().stem().string());
+  if (uniform && first && last &&
+      static_cast<double>(files.size()) >= kMostlyThere * static_cast<double>(*last - *first + 1)) {
+    return list_numbered_scans(folder, extension);
   }
   std::vector<ScanFile> scans;
   for (const fs::path& file : files) scans.push_back({.path = file, .frame = scans.size()});

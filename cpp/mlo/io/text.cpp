@@ -46,6 +46,16 @@ std::optional<TextLine> line_at(std::string_view text, std::size_t offset) {
   return line;
 }
 
+std::vector<std::string_view> split_lines(std::string_view text) {
+  std::vector<std::string_view> lines;
+  std::size_t offset = 0;
+  while (const std::optional<TextLine> line = line_at(text, offset)) {
+    lines.push_back(line->text);
+    offset = line->next_offset;
+  }
+  return lines;
+}
+
 std::vector<std::string_view> split_words(std::string_view line) {
   std::vector<std::string_view> words;
   for (;;) {

@@ -19,6 +19,8 @@ struct TextLine {
 };
 /// The line that begins at an offset; nothing at the end of the text.
 std::optional<TextLine> line_at(std::string_view text, std::size_t offset);
+/// All lines without their ends.
+std::vector<std::string_view> split_lines(std::string_view text);
 
 /// Words of a line, separated by blanks.
 std::vector<std::string_view> split_words(std::string_view line);

@@ -51,12 +51,8 @@ std::optional<double> parse_date_s(std::string_view text) {
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
   const std::string text = read_file(file);
-  std::vector<std::string> lines;
-  std::size_t offset = 0;
-  while (const std::optional<TextLine> line = line_at(text, offset)) {
-    lines.emplace_back(line->text);
-    offset = line->next_offset;
-  }
+  const std::vector<std::string_view> views = split_lines(text);
+  std::vector<std::string> lines(views.begin(), views.end());
   while (!lines.empty() && is_blank(lines.back())) lines.pop_back();
   return lines;
 }

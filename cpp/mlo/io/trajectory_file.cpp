@@ -22,7 +22,7 @@ constexpr double kQuaternionTolerance = 1e-2;
 
 SE3 tum_pose(const std::vector<double>& row, const std::string& where) {
   const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
-  const SE3 pose(q, {row[1], row[2], row[3]});
+  SE3 pose(q, {row[1], row[2], row[3]});
   if (!(std::abs(q.norm() - 1.0) < kQuaternionTolerance) || !pose.is_finite() || !std::isfinite(row[0])) {
     throw InputError(fmt::format(
         "{}: no finite pose with a quaternion of length 1; TUM rows are stamp tx ty tz qx qy qz qw", where));

@@ -12,6 +12,8 @@ namespace {
 
 // The map is searched for what to forget each time the robot has moved by this share of the radius.
 constexpr double kForgetEvery = 0.05;
+// So many points wait for the memory of their voxels together.
+constexpr std::size_t kInsertedAtOnce = 16;
 
 }  // namespace
 
@@ -38,13 +40,14 @@ inline std::array<float, LocalMap::Voxel::kLanes> LocalMap::Voxel::squared_dista
 }
 
 std::vector<std::uint8_t> LocalMap::insert(std::span<const Eigen::Vector3f> points_map) {
-  std::vector<std::uint8_t> added(points_map.size(), 0);
-  const auto spacing2 =
-      static_cast<float>(config_.min_spacing_m * config_.min_spacing_m) / (step_m_ * step_m_);
+  struct Home {
+    Voxel* voxel = nullptr;
+    Eigen::Vector3f steps;  // from its middle
+  };
+  std::array<Home, kInsertedAtOnce> homes;
   VoxelBlock* block = nullptr;
   VoxelKey last_block;
-  for (std::size_t i = 0; i < points_map.size(); ++i) {
-    const Eigen::Vector3f& p = points_map[i];
+  const auto home_of = [&](const Eigen::Vector3f& p) -> Home {
     const VoxelKey key = voxel_key(p, inverse_voxel_);
     // Neighbours in a scan are neighbours in the map.
     if (block == nullptr || VoxelBlock::key_of(key) != last_block) {
@@ -53,16 +56,32 @@ std::vector<std::uint8_t> LocalMap::insert(std::span<const Eigen::Vector3f> poin
     }
     std::uint32_t& place = block->at(key);
     if (place == VoxelBlock::kNone) place = take_voxel();
-    Voxel& home = voxel(place);
-    if (home.count() >= static_cast<std::size_t>(config_.max_points_per_voxel)) continue;
-    const Eigen::Vector3f steps = (p - middle(key)) / step_m_;
-    const auto distances2 = home.squared_distances(steps);
-    const auto end = std::next(distances2.begin(), static_cast<std::ptrdiff_t>(home.count()));
-    if (std::any_of(distances2.begin(), end, [&](float d2) { return d2 < spacing2; })) continue;
-    home.push_back(steps);
-    added[i] = 1;
+    return {&voxel(place), (p - middle(key)) / step_m_};
+  };
+
+  std::vector<std::uint8_t> added(points_map.size(), 0);
+  for (std::size_t first = 0; first < points_map.size(); first += homes.size()) {
+    const std::size_t size = std::min(homes.size(), points_map.size() - first);
+    for (std::size_t i = 0; i < size; ++i) {
+      homes[i] = home_of(points_map[first + i]);
+      homes[i].voxel->prefetch();
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!has_room(*homes[i].voxel, homes[i].steps)) continue;
+      homes[i].voxel->push_back(homes[i].steps);
+      added[first + i] = 1;
+    }
   }
   return added;
+}
+
+// For another point, at a place in steps from the voxel's middle.
+bool LocalMap::has_room(const Voxel& voxel, const Eigen::Vector3f& steps) const {
+  if (voxel.count() >= static_cast<std::size_t>(config_.max_points_per_voxel)) return false;
+  const auto spacing = static_cast<float>(config_.min_spacing_m) / step_m_;
+  const auto distances2 = voxel.squared_distances(steps);
+  const auto end = std::next(distances2.begin(), static_cast<std::ptrdiff_t>(voxel.count()));
+  return std::none_of(distances2.begin(), end, [&](float d2) { return d2 < spacing * spacing; });
 }
 
 void LocalMap::Voxel::push_back(const Eigen::Vector3f& p) {

@@ -80,6 +80,7 @@ class LocalMap {
     return pools_[place >> kPoolBits][place & ((1U << kPoolBits) - 1U)];
   }
   std::uint32_t take_voxel();
+  bool has_room(const Voxel& voxel, const Eigen::Vector3f& steps) const;
   Eigen::Vector3f middle(const VoxelKey& key) const;
   bool forget_beyond(const VoxelKey& block_key, VoxelBlock& block, const VoxelKey& center,
                      double radius_voxels);

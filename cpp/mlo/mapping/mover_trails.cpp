@@ -1,6 +1,7 @@
 #include "mlo/mapping/mover_trails.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 namespace mlo {
@@ -45,17 +46,16 @@ std::vector<TrailPlace> MoverTrails::trail_before(const TrailedObject& object, d
   std::vector<TrailPlace> places;
   SE3 T_map_object = object.T_map_object;
   double known_s = stamp_s;
-  for (auto scan = scans_.rbegin(); scan != scans_.rend(); ++scan) {
-    if (stamp_s - scan->stamp_s > length_s_) break;
-    const auto own = scan->T_map_object.find(object.id);
-    if (own != scan->T_map_object.end()) {
+  for (const auto& scan : std::views::reverse(scans_)) {
+    if (stamp_s - scan.stamp_s > length_s_) break;
+    const auto own = scan.T_map_object.find(object.id);
+    if (own != scan.T_map_object.end()) {
       T_map_object = own->second;
-      known_s = scan->stamp_s;
+      known_s = scan.stamp_s;
     }
-    places.push_back(
-        {.frame = scan->frame,
-         .T_map_object = moved_on(T_map_object, object.velocity_map_mps, scan->stamp_s - known_s),
-         .size_lwh_m = object.size_lwh_m});
+    places.push_back({.frame = scan.frame,
+                      .T_map_object = moved_on(T_map_object, object.velocity_map_mps, scan.stamp_s - known_s),
+                      .size_lwh_m = object.size_lwh_m});
   }
   return places;
 }

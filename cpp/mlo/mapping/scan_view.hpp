@@ -21,7 +21,7 @@ class ScanView {
   ScanView(std::span<const Point> points, const SweepMotion& motion, const SE3& T_map_lidar)
       : image_(points),
         motion_(motion),
-        T_lidar_map_(T_map_lidar.inverse()),
+        R_lidar_map_(T_map_lidar.rotation().conjugate().toRotationMatrix().cast<float>()),
         center_map_(T_map_lidar.translation().cast<float>()) {}
 
   /// Where the lidar was [m].
@@ -32,13 +32,13 @@ class ScanView {
   Sight look(const Eigen::Vector3f& p_map, bool on_ground, const FreeSpaceConfig& config) const;
 
   static void archive(auto& self, auto& bytes) {  // core/archive.hpp
-    bytes(self.image_, self.motion_, self.T_lidar_map_, self.center_map_);
+    bytes(self.image_, self.motion_, self.R_lidar_map_, self.center_map_);
   }
 
  private:
   RangeImage image_;
   SweepMotion motion_;
-  SE3 T_lidar_map_;
+  Eigen::Matrix3f R_lidar_map_;
   Eigen::Vector3f center_map_;
 };
 

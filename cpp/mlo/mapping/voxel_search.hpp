@@ -114,7 +114,7 @@ class SmallestKeys {
 
   /// Without a branch, as none could be foretold: the key goes past all that are smaller.
   void add(std::int32_t key) {
-    const Keys before = __builtin_shuffle(keys_, Keys{}, Keys{8, 0, 1, 2, 3, 4, 5, 6});
+    const Keys before = __builtin_shufflevector(keys_, Keys{}, 8, 0, 1, 2, 3, 4, 5, 6);
     const Keys added = Keys{} + key;
     const Keys larger = before > added ? before : added;
     keys_ = keys_ < larger ? keys_ : larger;

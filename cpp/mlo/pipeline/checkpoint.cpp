@@ -1,5 +1,9 @@
 #include "mlo/pipeline/checkpoint.hpp"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "mlo/core/archive.hpp"
@@ -24,15 +28,14 @@ struct Content {
 
 // The first lines in which two texts differ.
 std::pair<std::string, std::string> difference(std::string_view a, std::string_view b) {
-  for (std::size_t i = 0, k = 0;;) {
-    const std::optional<TextLine> line_a = line_at(a, i);
-    const std::optional<TextLine> line_b = line_at(b, k);
-    const std::string text_a(line_a ? line_a->text : "");
-    const std::string text_b(line_b ? line_b->text : "");
-    if (text_a != text_b || !line_a || !line_b) return {text_a, text_b};
-    i = line_a->next_offset;
-    k = line_b->next_offset;
+  const std::vector<std::string_view> lines_a = split_lines(a);
+  const std::vector<std::string_view> lines_b = split_lines(b);
+  for (std::size_t i = 0; i < std::max(lines_a.size(), lines_b.size()); ++i) {
+    const std::string_view line_a = i < lines_a.size() ? lines_a[i] : "";
+    const std::string_view line_b = i < lines_b.size() ? lines_b[i] : "";
+    if (line_a != line_b) return {std::string(line_a), std::string(line_b)};
   }
+  return {};
 }
 
 }  // namespace

@@ -105,11 +105,11 @@ std::string moved_row(std::string_view row, ObjectPose object, const SE3& correc
 
 std::string moved_table(const std::filesystem::path& file, const std::map<std::size_t, SE3>& by_frame) {
   const std::string text = read_file(file);
-  std::optional<TextLine> line = line_at(text, 0);
-  std::string moved = std::string(line->text) + '\n';
+  const std::vector<std::string_view> lines = split_lines(text);
+  std::string moved = std::string(lines.at(0)) + '\n';
+  std::size_t row = 0;
   for (const ObjectPose& object : read_objects_csv(file)) {
-    line = line_at(text, line->next_offset);
-    moved += moved_row(line->text, object, by_frame.at(object.frame)) + '\n';
+    moved += moved_row(lines.at(++row), object, by_frame.at(object.frame)) + '\n';
   }
   return moved;
 }
