@@ -55,8 +55,43 @@ TEST(RangeImage, WorksAcrossTheSeamBehindTheLidar) {
 
 TEST(RangeImage, BesideTheRimOfANearerSurfaceNothingLooksFree) {
   const RangeImage image(round_room(20.0, 8.0));
-  EXPECT_EQ(image.look(7.9F * direction(10.3, 0.0), 0.3F), Sight::unknown);
+  EXPECT_EQ(image.look(7.9F * direction(10.1, 0.0), 0.3F), Sight::unknown);
   EXPECT_EQ(image.look(7.9F * direction(12.0, 0.0), 0.3F), Sight::through);
+}
+
+/// Straight ahead, below the lidar, from 6 to 9 m: scan lines meet it at 6.1, 7.0 and 8.2 m.
+constexpr float kRoofM = -0.6F;
+std::vector<Point> room_with_roof(bool is_there) {
+  std::vector<Point> room = round_room(20.0, 20.0);
+  for (Point& point : room) {
+    const float along_m = point.p_lidar.head<2>().norm() * kRoofM / point.p_lidar.z();
+    const bool ahead = point.p_lidar.x() > 0.0F && std::abs(point.p_lidar.y()) < 0.17F * point.p_lidar.x();
+    if (is_there && ahead && along_m > 6.0F && along_m < 9.0F) point.p_lidar *= kRoofM / point.p_lidar.z();
+  }
+  return room;
+}
+
+TEST(RangeImage, ASurfaceAtAGrazingAngleIsNotSeenThrough) {
+  const RangeImage there(room_with_roof(true));
+  const RangeImage gone(room_with_roof(false));
+  int seen = 0;
+  for (float x_m = 6.5F; x_m < 8.9F; x_m += 0.1F) {
+    EXPECT_NE(there.look({x_m, 0.0F, kRoofM}, 0.24F), Sight::through) << x_m;
+    EXPECT_EQ(gone.look({x_m, 0.0F, kRoofM}, 0.24F), Sight::through) << x_m;
+    seen += there.look({x_m, 0.0F, kRoofM}, 0.24F) == Sight::hit ? 1 : 0;
+  }
+  EXPECT_GT(seen, 0);
+}
+
+// With as few points in a line, fine columns would have no rays.
+TEST(RangeImage, SeesThroughToTheWallWithCoarseScanLinesToo) {
+  std::vector<Point> room = round_room(20.0, 20.0);
+  std::vector<Point> coarse;
+  for (std::size_t i = 0; i < room.size(); i += 4) coarse.push_back(room[i]);
+  const RangeImage image(coarse);
+  for (double azimuth_deg = -180.0; azimuth_deg < 180.0; azimuth_deg += 0.37) {
+    EXPECT_EQ(image.look(12.0F * direction(azimuth_deg, 0.1), 0.3F), Sight::through) << azimuth_deg;
+  }
 }
 
 TEST(RangeImage, SaysNothingWhereNoRayWent) {
@@ -85,7 +120,7 @@ TEST(RangeImage, AboveTheHighestRaysIsTheSky) {
   EXPECT_EQ(image.look(7.0F * direction(0.0, 3.0), 0.3F), Sight::sky);
   EXPECT_EQ(image.look(7.0F * direction(0.0, 9.0), 0.3F), Sight::sky);
   EXPECT_NE(image.look(7.0F * direction(0.0, 0.1), 0.3F), Sight::sky) << "beside rays that came back";
-  EXPECT_EQ(image.look(7.0F * direction(9.3, 3.0), 0.3F), Sight::unknown) << "beside rays that came back";
+  EXPECT_EQ(image.look(7.0F * direction(9.5, 3.0), 0.3F), Sight::unknown) << "beside rays that came back";
   EXPECT_EQ(image.look(7.0F * direction(0.0, -3.0), 0.3F), Sight::through);
 }
 

@@ -101,7 +101,7 @@ struct RefinementConfig {
 
 /// What scans tell about places that their rays go through.
 struct FreeSpaceConfig {
-  int every = 4;
+  int every = 3;
   double range_m = 60.0;
   double margin_m = 0.2;
   double margin_per_range = 0.005;
@@ -124,7 +124,7 @@ struct FreeSpaceConfig {
 
 /// Things that move and that no detector reports.
 struct UnknownMoversConfig {
-  int every = 12;
+  int every = 8;
   int scans_remembered = 20;
   int min_free = 2;
   double column_m = 0.5;
@@ -157,7 +157,7 @@ struct UnknownMoversConfig {
 struct StaticMapConfig {
   double voxel_m = 0.2;
   int turns = 2;
-  double hit_votes = 0.7;
+  double hit_votes = 0.8;
   double max_votes = 8.0;
   double sure_votes = 3.0;
   double moving_margin_m = 0.5;

@@ -10,6 +10,13 @@ namespace mlo {
 namespace {
 
 constexpr int kMaxRows = 128;
+// Columns for each point of a full scan line: with fewer, a place is only free with much around it; with
+// more, rays miss pixels.
+constexpr double kColumnsPerPoint = 0.75;
+constexpr int kMinColumns = 360;
+constexpr int kMaxColumns = 1440;
+// A ray just below that ended within this before a place met the surface to which the place belongs [m].
+constexpr float kSameSurfaceM = 2.0F;
 // Elevations are compared by their tangents: cheaper, and nearly the same over a lidar's field of view.
 float tangent(const Eigen::Vector3f& p) {
   return p.z() / p.head<2>().norm();
@@ -19,27 +26,43 @@ std::size_t index(int row, int column, int columns) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
 }
 
-// Scan lines that are in use, of those with known numbers.
-int count_rings(std::span<const Point> points) {
-  std::array<bool, kMaxRows> used{};
+// Points of each scan line, of those with known numbers.
+std::array<int, kMaxRows> points_by_ring(std::span<const Point> points) {
+  std::array<int, kMaxRows> counts{};
   for (const Point& point : points) {
-    if (point.ring < kMaxRows) used[point.ring] = true;
+    if (point.ring < kMaxRows) ++counts[point.ring];
   }
-  return static_cast<int>(std::count(used.begin(), used.end(), true));
+  return counts;
+}
+
+// Points that a scan line would have all round, were it as dense everywhere as where it has some.
+double points_around(std::span<const Point> points, std::size_t ring) {
+  constexpr std::size_t kSectors = 360;
+  std::array<bool, kSectors> used{};
+  int count = 0;
+  for (const Point& point : points) {
+    if (point.ring != ring) continue;
+    const float turns = azimuth_turns(point.p_lidar.x(), point.p_lidar.y());
+    used[std::min(kSectors - 1, static_cast<std::size_t>(turns * static_cast<float>(kSectors)))] = true;
+    ++count;
+  }
+  const auto sectors = std::count(used.begin(), used.end(), true);
+  return sectors > 0 ? static_cast<double>(count) * kSectors / static_cast<double>(sectors) : 0.0;
 }
 
 }  // namespace
 
 RangeImage::RangeImage(std::span<const Point> points) {
-  if (!points.empty()) set_rows(points);
-  pixels_.resize(static_cast<std::size_t>(rows_) * kColumns);
-  std::vector<float> fraction_sums(kColumns, 0.0F);
-  std::vector<int> counts(kColumns, 0);
-  top_rows_.assign(kColumns, -1);
+  set_size(points);
+  const auto columns = static_cast<std::size_t>(columns_);
+  pixels_.resize(static_cast<std::size_t>(rows_) * columns);
+  std::vector<float> fraction_sums(columns, 0.0F);
+  std::vector<int> counts(columns, 0);
+  top_rows_.assign(columns, -1);
   for (const Point& point : points) {
     const int c = column(point.p_lidar);
     const int r = row(point.p_lidar);
-    Pixel& pixel = pixels_[index(r, c, kColumns)];
+    Pixel& pixel = pixels_[index(r, c, columns_)];
     int& top_row = top_rows_[static_cast<std::size_t>(c)];
     top_row = std::max(top_row, r);
     const float range_m = point.p_lidar.norm();
@@ -48,13 +71,14 @@ RangeImage::RangeImage(std::span<const Point> points) {
     fraction_sums[static_cast<std::size_t>(c)] += point.sweep_fraction;
     ++counts[static_cast<std::size_t>(c)];
   }
-  sweep_fractions_.assign(kColumns, 0.5F);
+  sweep_fractions_.assign(columns, 0.5F);
   for (std::size_t c = 0; c < counts.size(); ++c) {
     if (counts[c] > 0) sweep_fractions_[c] = fraction_sums[c] / static_cast<float>(counts[c]);
   }
 }
 
-void RangeImage::set_rows(std::span<const Point> points) {
+void RangeImage::set_size(std::span<const Point> points) {
+  if (points.empty()) return;
   float highest = -std::numeric_limits<float>::max();
   lowest_tangent_ = std::numeric_limits<float>::max();
   for (const Point& point : points) {
@@ -62,13 +86,20 @@ void RangeImage::set_rows(std::span<const Point> points) {
     lowest_tangent_ = std::min(lowest_tangent_, t);
     highest = std::max(highest, t);
   }
-  rows_ = std::max(1, count_rings(points));
+  const std::array<int, kMaxRows> counts = points_by_ring(points);
+  const auto used = std::count_if(counts.begin(), counts.end(), [](int count) { return count > 0; });
+  rows_ = std::max(1, static_cast<int>(used));
+  const auto fullest =
+      static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+  columns_ = std::clamp(static_cast<int>(kColumnsPerPoint * points_around(points, fullest)), kMinColumns,
+                        kMaxColumns);
   const float height = (highest - lowest_tangent_) * 1.0001F;
   inverse_row_height_ = height > 0.0F ? static_cast<float>(rows_) / height : 0.0F;
 }
 
-int RangeImage::column(const Eigen::Vector3f& p_lidar) {
-  return std::min(kColumns - 1, static_cast<int>(azimuth_turns(p_lidar.x(), p_lidar.y()) * kColumns));
+int RangeImage::column(const Eigen::Vector3f& p_lidar) const {
+  const float turns = azimuth_turns(p_lidar.x(), p_lidar.y());
+  return std::min(columns_ - 1, static_cast<int>(turns * static_cast<float>(columns_)));
 }
 
 int RangeImage::row(const Eigen::Vector3f& p_lidar) const {
@@ -76,8 +107,8 @@ int RangeImage::row(const Eigen::Vector3f& p_lidar) const {
 }
 
 const RangeImage::Pixel& RangeImage::at(int row, int column) const {
-  const int wrapped = (column + kColumns) % kColumns;
-  return pixels_[index(row, wrapped, kColumns)];
+  const int wrapped = (column + columns_) % columns_;
+  return pixels_[index(row, wrapped, columns_)];
 }
 
 float RangeImage::sweep_fraction(const Eigen::Vector3f& p_lidar) const {
@@ -96,7 +127,7 @@ bool RangeImage::is_empty_around(int row, int column) const {
 // From the row below upwards. A direction without any ray was not looked at: it was cropped, or hidden.
 bool RangeImage::is_sky(int row, int column) const {
   for (int j = column - 1; j <= column + 1; ++j) {
-    const int top_row = top_rows_[static_cast<std::size_t>((j + kColumns) % kColumns)];
+    const int top_row = top_rows_[static_cast<std::size_t>((j + columns_) % columns_)];
     if (top_row < 0 || top_row >= row - 1) return false;
   }
   return true;
@@ -113,9 +144,12 @@ Sight RangeImage::look(const Eigen::Vector3f& p_lidar, float margin_m) const {
   }
   const float range_m = p_lidar.norm();
   if (range_m > middle.nearest_m - margin_m && range_m < middle.farthest_m + margin_m) return Sight::hit;
+  const auto ended_since = [&](const Pixel& pixel, float from_m) {
+    return pixel.nearest_m > 0.0F && pixel.nearest_m > from_m && pixel.nearest_m < range_m + margin_m;
+  };
   for (int j = c - 1; j <= c + 1; ++j) {
-    const Pixel& pixel = at(r, j);
-    if (pixel.nearest_m > 0.0F && pixel.nearest_m < range_m + margin_m) return Sight::unknown;
+    if (ended_since(at(r, j), 0.0F)) return Sight::unknown;
+    if (r > 0 && ended_since(at(r - 1, j), range_m - kSameSurfaceM)) return Sight::unknown;
   }
   return Sight::through;
 }
