@@ -93,9 +93,11 @@ ParsedDetection parse_row(const Cells& cells, const RowLayout& layout, std::opti
 }  // namespace
 
 bool is_file_per_frame(std::string_view text) {
-  for (const std::string_view line : split_lines(text)) {
-    if (is_blank(line)) continue;
-    const RowLayout* const layout = recognise(line);
+  std::size_t offset = 0;
+  while (const std::optional<TextLine> line = line_at(text, offset)) {
+    offset = line->next_offset;
+    if (is_blank(line->text)) continue;
+    const RowLayout* const layout = recognise(line->text);
     return layout != nullptr && layout->frame == kNone;
   }
   return false;

@@ -25,9 +25,10 @@ struct Source {
 std::vector<ParsedDetection> parse_file(const fs::path& path, const Calibration& calibration) {
   const std::string text = read_file(path);
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string::npos) return {};
+  const std::optional<TextLine> line = line_at(text, begin);
+  if (!line) return {};
   if (text[begin] == '{' || text[begin] == '[') return parse_json_detections(path, text);
-  const std::string_view first = split_lines(std::string_view(text).substr(begin)).front();
+  const std::string_view first = line->text;
   const bool named_columns =
       first.find(',') != std::string_view::npos && !parse_number(split_cells(first)[0]);
   if (named_columns) return parse_csv_detections(path, text);
