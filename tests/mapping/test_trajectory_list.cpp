@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mlo/mapping/displacement.hpp"
+#include "mlo/mapping/motion_belief.hpp"
 #include "mlo/mapping/trajectory_list.hpp"
 
 namespace mlo {
@@ -126,6 +128,20 @@ TEST(TrajectoryList, AFlatSideThatSlidesAlongItsOwnTrailMoves) {
   }
 }
 
+TEST(TrajectoryList, NewSidesOfWhatRestsAreNoMotion) {
+  TrajectoryList list = make_list();
+  // A car behind others comes into view, from its rear on.
+  for (std::uint64_t scan = 0; scan < 40; ++scan) {
+    ObjectSight sight = sight_at(0.0, 0.15, scan);
+    const double seen_to_m = -0.5 * kSize.x() + 0.1 * static_cast<double>(scan);
+    const SE3 T_object_map = car_at(0.0).inverse();
+    std::erase_if(sight.points_map, [&](const Eigen::Vector3f& p) {
+      return (T_object_map * p.cast<double>()).x() > seen_to_m;
+    });
+    EXPECT_EQ(update(list, sight), Mobility::at_rest) << "scan " << scan;
+  }
+}
+
 TEST(TrajectoryList, AYoungMapTellsOfAClearMotion) {
   TrajectoryList list = make_list();
   double x_m = 0.0;
@@ -228,6 +244,65 @@ TEST(Displacement, IsUnsureAlongAFlatSide) {
   ASSERT_TRUE(found.known);
   EXPECT_GT(found.sd_m(), 0.2);
   EXPECT_LT(found.significance(), 4.0);
+}
+
+TEST(MotionBelief, ADisplacementCountsWhenTheMapAgrees) {
+  Displacement displacement;
+  displacement.known = true;
+  displacement.shift_map_m = Eigen::Vector2d(0.1, 0.0);
+  displacement.covariance = Eigen::Matrix2d::Identity() * std::pow(0.1 / 8.0, 2);
+  displacement.fit_before = 0.7;
+  displacement.fit_after = 0.9;
+  constexpr double kSlow = 0.2;
+  EXPECT_GT(motion_belief(kSlow, displacement, {.misfit = 0.4, .gain = 0.5}, {}), 0.0);
+  EXPECT_LT(motion_belief(kSlow, displacement, {.misfit = 0.1, .gain = -0.1}, {}), 0.0) << "a new side";
+  displacement.covariance *= 16.0;
+  EXPECT_LT(motion_belief(kSlow, displacement, {.misfit = 0.4, .gain = 0.5}, {}), 0.0) << "noise";
+}
+
+std::vector<Eigen::Vector3f> car_map_points(std::uint64_t seed) {
+  return car_points(SE3(), seed);
+}
+
+TEST(MapFit, WhatMovedTakesItsMapAlong) {
+  LocalMap map((LocalMapConfig()));
+  for (std::uint64_t scan = 0; scan < 5; ++scan) map.insert(car_points(car_at(0.0), scan));
+  const std::vector<Eigen::Vector3f> now = car_points(car_at(0.3), 99);
+  const Displacement found = measure_displacement(now, map, {}, {});
+  ASSERT_TRUE(found.known);
+  const MapFit fit = fit_map(car_map_points(7), car_at(0.0), now, found, {}, {});
+  EXPECT_GT(fit.misfit, 0.2);
+  EXPECT_GT(fit.gain, 0.5);
+}
+
+TEST(MapFit, WhatStandsDoesNot) {
+  const std::vector<Eigen::Vector3f> now = car_points(car_at(0.0), 99);
+  Displacement wrong;
+  wrong.known = true;
+  wrong.shift_map_m = Eigen::Vector2d(0.3, 0.0);
+  wrong.center_map = car_at(0.0).translation();
+  const MapFit fit = fit_map(car_map_points(7), car_at(0.0), now, wrong, {}, {});
+  EXPECT_LT(fit.misfit, 0.1);
+  EXPECT_LT(fit.gain, 0.0);
+}
+
+TEST(MapFit, UndoesATurnAboutTheCentreOfThePoints) {
+  constexpr double kTurn_rad = 0.1;
+  const SE3 turned = car_at(0.0) * SE3(so3_exp({0.0, 0.0, kTurn_rad}), Eigen::Vector3d::Zero());
+  const std::vector<Eigen::Vector3f> now = car_points(turned, 99);
+  Displacement displacement;
+  displacement.known = true;
+  displacement.turn_rad = kTurn_rad;
+  displacement.center_map = car_at(0.0).translation();
+  EXPECT_GT(fit_map(car_map_points(7), car_at(0.0), now, displacement, {}, {}).gain, 0.7);
+}
+
+TEST(MapFit, SaysNothingOfSidesThatAreNotSeen) {
+  const std::vector<Eigen::Vector3f> elsewhere = car_points(car_at(50.0), 1);
+  const MapFit fit = fit_map(car_map_points(7), car_at(0.0), elsewhere, {}, {}, {});
+  EXPECT_EQ(fit.misfit, 0.0);
+  EXPECT_EQ(fit.gain, 0.0);
+  EXPECT_EQ(fit_map({}, car_at(0.0), elsewhere, {}, {}, {}).gain, 0.0);
 }
 
 TEST(Displacement, IsUnknownWithoutAMapOrPoints) {

@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "mlo/core/parallel.hpp"
+#include "mlo/mapping/motion_belief.hpp"
 
 namespace mlo {
 namespace {
 
-constexpr double kSure = 2.0;  // standard deviations
+constexpr double kSure = 2.0;      // standard deviations
+constexpr double kInDoubt = -1.0;  // belief in a start, beyond which points do not enter the map at rest
 
 LocalMapConfig local_map_config(const DynamicCheckConfig& config) {
   LocalMapConfig map;
@@ -62,7 +64,7 @@ const LocalMap* TrajectoryList::map_at_rest(const Eigen::Vector3d& center_map) c
   const auto fits = [&](const Entry& entry) {
     const double distance_m = (entry.T_map_object.translation() - center_map).head<2>().norm();
     return entry.mobility == Mobility::at_rest && entry.sightings >= config_.min_sightings &&
-           entry.scans_displaced == 0 && distance_m < config_.same_place_m;
+           !entry.in_doubt && distance_m < config_.same_place_m;
   };
   const auto found =
       std::find_if(entries_.begin(), entries_.end(), [&](const auto& item) { return fits(item.second); });
@@ -77,7 +79,7 @@ void TrajectoryList::update(Entry& entry, const ObjectSight& sight) const {
     update_moving(entry, sight, displacement);
   }
   if (!sight.points_map.empty()) ++entry.sightings;
-  if (entry.scans_displaced == 0) entry.at_rest.insert(sight.points_map);
+  if (!entry.in_doubt) entry.at_rest.insert(sight.points_map);
   const bool at_rest = entry.mobility == Mobility::at_rest;
   entry.map.insert(sight.points_map, at_rest ? entry.T_map_object : sight.T_map_object,
                    config_.map_spacing_m);
@@ -86,17 +88,18 @@ void TrajectoryList::update(Entry& entry, const ObjectSight& sight) const {
 void TrajectoryList::update_at_rest(Entry& entry, const ObjectSight& sight,
                                     const Displacement& displacement) const {
   const bool fast = sight.moving_probability > config_.start_probability;
-  // Of a map that is still young, new sides of the object look like its motion.
-  const bool young = entry.sightings < config_.min_sightings;
-  const bool displaced =
-      young ? is_displaced_from_young_map(displacement) && entry.sightings > 1 : is_displaced(displacement);
-  entry.scans_displaced = displaced ? entry.scans_displaced + 1 : 0;
-  const bool starts = fast && !is_within(displacement, config_.in_place_m);
-  if (!starts && entry.scans_displaced < config_.scans_displaced) return;
+  bool starts = fast;
+  entry.in_doubt = false;
+  if (displacement.known) {
+    const double belief = belief_in_start(entry, sight, displacement);
+    starts = belief > 0.0;
+    entry.in_doubt = belief > kInDoubt;
+  }
+  if (!starts) return;
   entry.sightings = 0;
   entry.mobility = Mobility::moving;
   entry.too_slow_to_tell = !fast;
-  entry.scans_displaced = 0;
+  entry.in_doubt = false;
   entry.scans_in_place = 0;
   entry.scans_still = 0;
   entry.T_map_object = sight.T_map_object;
@@ -117,7 +120,7 @@ void TrajectoryList::update_moving(Entry& entry, const ObjectSight& sight,
     entry.T_map_object = sight.T_map_object;
   }
   entry.scans_in_place = fast || displaced ? 0 : entry.scans_in_place + 1;
-  const bool still = fast && !elsewhere && is_within(displacement, config_.still_m);
+  const bool still = fast && !elsewhere && is_still(displacement);
   if (displacement.known) entry.scans_still = still ? entry.scans_still + 1 : 0;
   // The slow end of a motion is seen by the points only, and that takes a while.
   const bool points_tell = displacement.known && kSure * displacement.sd_m() < config_.in_place_m;
@@ -128,21 +131,29 @@ void TrajectoryList::update_moving(Entry& entry, const ObjectSight& sight,
   entry.T_map_object = sight.T_map_object;
 }
 
+double TrajectoryList::belief_in_start(const Entry& entry, const ObjectSight& sight,
+                                       const Displacement& displacement) const {
+  // A speed that the points deny is that of a box that jumped.
+  const double by_speed =
+      is_still(displacement) ? std::min(sight.moving_probability, 0.5) : sight.moving_probability;
+  const auto belief_with = [&](const MapFit& map) {
+    return motion_belief(by_speed, displacement, map, config_.start);
+  };
+  // The map's answer costs as much as the displacement did: it is asked only if it can matter.
+  constexpr MapFit kMost{.misfit = 1.0, .gain = 1.0};
+  const double most = belief_with(kMost);
+  if (most < kInDoubt) return most;
+  return belief_with(fit_map(entry.map.points_object(), entry.T_map_object, sight.points_map, displacement,
+                             config_, shapes_));
+}
+
 bool TrajectoryList::is_displaced(const Displacement& displacement) const {
   return displacement.known && displacement.length_m() > config_.min_displacement_m &&
-         displacement.significance() > config_.min_significance &&
-         displacement.fit_after - displacement.fit_before > config_.min_fit_gain;
+         displacement.significance() > config_.min_significance;
 }
 
-bool TrajectoryList::is_displaced_from_young_map(const Displacement& displacement) const {
-  return displacement.known && displacement.length_m() > config_.min_displacement_m &&
-         displacement.significance() > config_.young_significance &&
-         displacement.loss_gain > config_.young_loss_gain;
-}
-
-bool TrajectoryList::is_within(const Displacement& displacement, double distance_m) const {
-  return displacement.known && displacement.fit_before > config_.in_place_fit &&
-         displacement.length_m() + kSure * displacement.sd_m() < distance_m;
+bool TrajectoryList::is_still(const Displacement& displacement) const {
+  return displacement.known && displacement.length_m() + kSure * displacement.sd_m() < config_.still_m;
 }
 
 }  // namespace mlo

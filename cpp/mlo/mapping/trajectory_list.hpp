@@ -12,6 +12,7 @@
 #include "mlo/core/labelled_point.hpp"
 #include "mlo/core/se3.hpp"
 #include "mlo/mapping/config.hpp"
+#include "mlo/mapping/displacement.hpp"
 #include "mlo/mapping/local_map.hpp"
 #include "mlo/mapping/object_map.hpp"
 
@@ -62,7 +63,7 @@ class TrajectoryList {
     explicit Entry(const LocalMapConfig& config) : at_rest(config) {}
     Mobility mobility = Mobility::at_rest;  // at first sight
     int sightings = 0;                      // at rest, or in motion
-    int scans_displaced = 0;                // in a row, while at rest
+    bool in_doubt = false;                  // may have begun to move
     bool too_slow_to_tell = false;          // moves, but only its displacement shows it
     int scans_in_place = 0;                 // in a row, while moving
     int scans_still = 0;                    // the same, by its points alone
@@ -70,7 +71,7 @@ class TrajectoryList {
     LocalMap at_rest;                       // its points while it rests, or moves little; map frame
     ObjectMap map;
     static void archive(auto& self, auto& bytes) {
-      bytes(self.mobility, self.sightings, self.scans_displaced, self.too_slow_to_tell, self.scans_in_place,
+      bytes(self.mobility, self.sightings, self.in_doubt, self.too_slow_to_tell, self.scans_in_place,
             self.scans_still, self.T_map_object, self.at_rest, self.map);
     }
   };
@@ -78,9 +79,10 @@ class TrajectoryList {
   void update(Entry& entry, const ObjectSight& sight) const;
   void update_at_rest(Entry& entry, const ObjectSight& sight, const Displacement& displacement) const;
   void update_moving(Entry& entry, const ObjectSight& sight, const Displacement& displacement) const;
+  double belief_in_start(const Entry& entry, const ObjectSight& sight,
+                         const Displacement& displacement) const;
   bool is_displaced(const Displacement& displacement) const;
-  bool is_displaced_from_young_map(const Displacement& displacement) const;
-  bool is_within(const Displacement& displacement, double distance_m) const;
+  bool is_still(const Displacement& displacement) const;
 
   DynamicCheckConfig config_;
   RefinementConfig shapes_;
