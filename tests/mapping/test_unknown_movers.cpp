@@ -107,6 +107,21 @@ TEST_F(Passing, AllThatFollowsTheFrontBelongsToIt) {
     EXPECT_TRUE(found.columns.contains({20.1F, y, -2.0F})) << y;
 }
 
+TEST_F(Passing, ItsWayIsWhereItIsAndWhereItCameFrom) {
+  const UnknownMover mover = run(25, 4.0).movers.at(0);  // from -2 to 2 m along y
+  constexpr double kMargin_m = 0.5;                      // of the static map
+  const auto is_on_way = [&](const Vector3d& p_map) {
+    const Vector3d p_way = mover.T_map_way.inverse() * p_map;
+    return (p_way.cwiseAbs().array() <= 0.5 * mover.way_lwh_m.array() + kMargin_m).all();
+  };
+  EXPECT_TRUE(is_on_way({20.1, 1.5, -2.0})) << "itself";
+  EXPECT_TRUE(is_on_way({20.1, -20.0, -2.0})) << "two seconds before";
+  EXPECT_FALSE(is_on_way({20.1, -26.0, -2.0})) << "three seconds before";
+  EXPECT_FALSE(is_on_way({20.1, 4.0, -2.0})) << "ahead of it";
+  EXPECT_FALSE(is_on_way({23.5, -10.0, -2.0})) << "beside its way";
+  EXPECT_FALSE(is_on_way({20.1, -10.0, 1.0})) << "above its way";
+}
+
 TEST_F(Passing, KeepsItsIdentity) {
   const long id = run(20, 4.0).movers.at(0).id;
   EXPECT_EQ(run(5, 4.0).movers.at(0).id, id);

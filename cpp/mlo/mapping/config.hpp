@@ -102,7 +102,7 @@ struct RefinementConfig {
 /// What scans tell about places that their rays go through.
 struct FreeSpaceConfig {
   int every = 3;
-  double range_m = 60.0;
+  double range_m = 80.0;
   double margin_m = 0.2;
   double margin_per_range = 0.005;
 
@@ -132,6 +132,7 @@ struct UnknownMoversConfig {
   int min_points = 6;
   double min_way_m = 1.0;
   int min_scans = 5;
+  double came_for_s = 2.0;
 
   template <class Visitor>
   void fields(Visitor& visit) {
@@ -150,6 +151,8 @@ struct UnknownMoversConfig {
     visit("min_way_m", min_way_m, between(0.0, 100.0),
           "it is reported while it moves on this far in a second, and straight [m]");
     visit("min_scans", min_scans, between(2, 1000), "and was seen in so many scans in a row");
+    visit("came_for_s", came_for_s, between(0.0, 10.0),
+          "what stands where it came along within this time moves too, as the rest of a train does [s]");
   }
 };
 
@@ -161,7 +164,7 @@ struct StaticMapConfig {
   double max_votes = 8.0;
   double sure_votes = 3.0;
   double moving_margin_m = 0.5;
-  double trail_s = 0.6;
+  double trail_s = 1.2;
   double memory_radius_m = 200.0;
 
   template <class Visitor>

@@ -17,6 +17,7 @@ constexpr int kGap = 2;                 // columns this far apart still belong t
 constexpr double kMinSure = 0.1;        // share of a thing's judged points that did not only replace the sky
 constexpr double kMaxSway = 0.1;        // off a straight way, as a share of it
 constexpr double kReachM = 1.0;         // around where a thing is expected
+constexpr double kRearM = 10.0;         // of a thing, shows where the rest of it is
 
 struct LineOverTime {
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
@@ -51,6 +52,21 @@ LineOverTime fit_line(const Places& places) {
   return line;
 }
 
+using Points2d = std::vector<Eigen::Vector2d>;
+
+// What is long may bend: its rear shows where it came from.
+Eigen::AlignedBox2d way_along_x(const Points2d& columns, double behind_m) {
+  Eigen::AlignedBox2d all;
+  for (const Eigen::Vector2d& column : columns) all.extend(column);
+  Eigen::AlignedBox2d way;
+  for (const Eigen::Vector2d& column : columns) {
+    if (column.x() < all.min().x() + kRearM) way.extend(column);
+  }
+  way.min().x() -= behind_m;
+  way.max().x() = all.max().x();
+  return way;
+}
+
 }  // namespace
 
 void UnknownMovers::remember(ScanView view) {
@@ -69,13 +85,34 @@ FoundMovers UnknownMovers::update(double stamp_s, std::span<const Eigen::Vector3
     for (const VoxelKey& key : thing.columns) found.columns.insert(key);
     const Track& track = tracks_.emplace_back(follow(stamp_s, std::move(thing), before));
     if (static_cast<int>(track.places.size()) < config_.min_scans || !moves_steadily(track)) continue;
-    found.movers.push_back({.id = track.id,
-                            .center_map = track.thing.center_map,
-                            .size_m = track.thing.extent_map.sizes(),
-                            .velocity_map_mps = track.velocity_map_mps,
-                            .num_points = track.thing.num_points});
+    found.movers.push_back(mover_of(track));
   }
   return found;
+}
+
+UnknownMover UnknownMovers::mover_of(const Track& track) const {
+  const Thing& thing = track.thing;
+  UnknownMover mover;
+  mover.id = track.id;
+  mover.center_map = thing.center_map;
+  mover.size_m = thing.extent_map.sizes();
+  mover.velocity_map_mps = track.velocity_map_mps;
+  mover.num_points = thing.num_points;
+
+  const double yaw_rad = std::atan2(track.velocity_map_mps.y(), track.velocity_map_mps.x());
+  const Eigen::Rotation2Dd R_way_map(-yaw_rad);
+  Points2d columns_way;  // x along the motion, y to its left
+  for (const VoxelKey& key : thing.columns) {
+    columns_way.push_back(R_way_map * (config_.column_m * Eigen::Vector2d(key.x + 0.5, key.y + 0.5)));
+  }
+  const Eigen::AlignedBox2d way =
+      way_along_x(columns_way, config_.came_for_s * track.velocity_map_mps.norm());
+  Eigen::Vector3d middle_map = thing.extent_map.center();
+  middle_map.head<2>() = R_way_map.inverse() * way.center();
+  mover.T_map_way = {Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())), middle_map};
+  mover.way_lwh_m.head<2>() = way.sizes().array() + config_.column_m;
+  mover.way_lwh_m.z() = mover.size_m.z();
+  return mover;
 }
 
 // Things that come apart or into view jump about instead.

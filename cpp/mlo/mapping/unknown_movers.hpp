@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "mlo/core/se3.hpp"
 #include "mlo/mapping/column_set.hpp"
 #include "mlo/mapping/config.hpp"
 #include "mlo/mapping/scan_view.hpp"
@@ -20,6 +21,11 @@ struct UnknownMover {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();      ///< along the axes of the map
   Eigen::Vector2d velocity_map_mps = Eigen::Vector2d::Zero();
   std::size_t num_points = 0;
+
+  /// The upright box of the way on which it came, itself included, x along its motion: whatever stands there
+  /// now is part of it, or follows it.
+  SE3 T_map_way;
+  Eigen::Vector3d way_lwh_m = Eigen::Vector3d::Zero();
 };
 
 /// What moved in one scan.
@@ -86,6 +92,7 @@ class UnknownMovers {
   void judge(Column& column) const;
   std::vector<Thing> things_among(const std::vector<Column>& columns) const;
   bool moves_steadily(const Track& track) const;
+  UnknownMover mover_of(const Track& track) const;
   Track follow(double stamp_s, Thing thing, std::vector<Track>& before);
 
   UnknownMoversConfig config_;

@@ -345,7 +345,8 @@ FoundMovers Pipeline::find_unknown_movers(double stamp_s, const PlacedCandidates
 // Takes back what movers left in the static map before they were known to move.
 // @return where those that were lost should be, lidar frame
 std::vector<Box3d> Pipeline::follow_trails(const Scan& scan, const SE3& T_map_lidar,
-                                           std::span<const TrackedObject> objects) {
+                                           std::span<const TrackedObject> objects,
+                                           std::span<const UnknownMover> unknown_movers) {
   std::vector<TrailedObject> trailed;
   for (const TrackedObject& object : objects) {
     trailed.push_back({.id = object.id,
@@ -353,6 +354,13 @@ std::vector<Box3d> Pipeline::follow_trails(const Scan& scan, const SE3& T_map_li
                        .size_lwh_m = object.box.size_lwh_m,
                        .velocity_map_mps = object.velocity_map_mps,
                        .moves = object.reported && object.moving});
+  }
+  for (const UnknownMover& mover : unknown_movers) {
+    trailed.push_back({.id = -mover.id,  // those of tracks are positive
+                       .T_map_object = mover.T_map_way,
+                       .size_lwh_m = mover.way_lwh_m,
+                       .velocity_map_mps = mover.velocity_map_mps,
+                       .moves = true});
   }
   const Trails trails = mover_trails_.update(scan.frame, scan.stamp_s, trailed);
   for (const TrailPlace& place : trails.before) {
@@ -367,9 +375,12 @@ std::vector<Box3d> Pipeline::follow_trails(const Scan& scan, const SE3& T_map_li
 
 void Pipeline::update_static_map(const Scan& scan, std::span<const MapPoint> unmapped,
                                  const SweepMotion& motion, const SE3& T_map_lidar,
-                                 std::span<const TrackedObject> objects, const ColumnSet& unknown_movers) {
-  LeftOut left_out{T_map_lidar, boxes_of_moving(objects), unknown_movers};
-  const std::vector<Box3d> lost = follow_trails(scan, T_map_lidar, objects);
+                                 std::span<const TrackedObject> objects, const FoundMovers& unknown) {
+  LeftOut left_out{T_map_lidar, boxes_of_moving(objects), unknown.columns};
+  for (const UnknownMover& mover : unknown.movers) {
+    left_out.moving.push_back(upright_box(T_map_lidar.inverse() * mover.T_map_way, mover.way_lwh_m));
+  }
+  const std::vector<Box3d> lost = follow_trails(scan, T_map_lidar, objects, unknown.movers);
   left_out.moving.insert(left_out.moving.end(), lost.begin(), lost.end());
   static_map_.insert(unmapped, scan.frame, left_out);
   const auto is_turn = [&](int every) {
@@ -445,7 +456,7 @@ void Pipeline::commit(const Scan& scan, const Percept& seen, const SweepMotion& 
         if (grows_static_map || new_local_maps) unmapped = insert_in_local_maps(seen, in_map, T_map_lidar);
       });
   if (grows_static_map) {
-    update_static_map(scan, unmapped, motion, T_map_lidar, result.objects, unknown.columns);
+    update_static_map(scan, unmapped, motion, T_map_lidar, result.objects, unknown);
     result.unknown_movers = std::move(unknown.movers);
   }
 

@@ -122,9 +122,10 @@ class Pipeline {
   FoundMovers find_unknown_movers(double stamp_s, const PlacedCandidates& in_map);
   void update_static_map(const Scan& scan, std::span<const MapPoint> unmapped, const SweepMotion& motion,
                          const SE3& T_map_lidar, std::span<const TrackedObject> objects,
-                         const ColumnSet& unknown_movers);
+                         const FoundMovers& unknown);
   std::vector<Box3d> follow_trails(const Scan& scan, const SE3& T_map_lidar,
-                                   std::span<const TrackedObject> objects);
+                                   std::span<const TrackedObject> objects,
+                                   std::span<const UnknownMover> unknown_movers);
   /// @param next  with stamp, poses and motion of this scan; the rest is filled in
   void commit(const Scan& scan, const Percept& seen, const SweepMotion& motion, State next,
               FrameResult& result);
