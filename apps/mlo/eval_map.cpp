@@ -27,6 +27,7 @@ struct Options {
   std::filesystem::path poses;
   OpenOptions open;
   double truth_voxel_m = 0.05;
+  bool without_movable = false;
   MapRemovalOptions removal;
   bool json = false;
 };
@@ -46,6 +47,10 @@ PoseList poses_of_scans(const Dataset& dataset, const Options& options) {
   return *dataset.truth;
 }
 
+Movable movable(const Options& options) {
+  return options.without_movable ? Movable::is_left_out : Movable::counts_as_at_rest;
+}
+
 std::vector<LabelledPoint> labels_of_scans(const Options& options) {
   const Dataset dataset = open_dataset(options.truth, options.open);
   const auto labels = find_point_labels(dataset);
@@ -53,8 +58,8 @@ std::vector<LabelledPoint> labels_of_scans(const Options& options) {
     throw InputError(fmt::format("{}: has scans, but no folder labels with a .label file for each of them",
                                  options.truth.string()));
   }
-  LabelledMap map =
-      build_labelled_map(dataset, *labels, poses_of_scans(dataset, options), options.truth_voxel_m);
+  LabelledMap map = build_labelled_map(dataset, *labels, poses_of_scans(dataset, options),
+                                       options.truth_voxel_m, movable(options));
   for (const std::string& problem : map.problems) spdlog::warn("left out: {}", problem);
   if (map.scans == 0)
     throw InputError(fmt::format("{}: no scan has both labels and a pose", options.truth.string()));
@@ -64,7 +69,7 @@ std::vector<LabelledPoint> labels_of_scans(const Options& options) {
 std::optional<std::vector<LabelledPoint>> read_labels(const Options& options) {
   if (options.truth.empty()) return std::nullopt;
   if (is_directory(options.truth)) return labels_of_scans(options);
-  return read_labelled_cloud(options.truth);
+  return read_labelled_cloud(options.truth, movable(options));
 }
 
 Judgement judge(const std::filesystem::path& cloud, const std::optional<std::vector<LabelledPoint>>& truth,
@@ -176,6 +181,10 @@ void add_truth_options(CLI::App& command, Options& options) {
   positive("--distance", options.removal.distance_m,
            "A labelled point this near to the map is in it (SA, DA): half the map's voxels [m]");
   positive("--truth-voxel", options.truth_voxel_m, "Spacing of the labelled points made of scans [m]");
+  command.add_flag(
+      "--without-movable", options.without_movable,
+      "Do not count vehicles and people at rest (SemanticKITTI's classes 10 to 32), which the maps "
+      "of mlo run are meant to be without");
 }
 
 }  // namespace

@@ -35,6 +35,10 @@ TEST(LabelledPoints, SemanticKittiClasses) {
   EXPECT_EQ(mobility_of(1), Mobility::unknown);
   EXPECT_EQ(mobility_of(10), Mobility::at_rest);  // a parked car
   EXPECT_EQ(mobility_of(40), Mobility::at_rest);  // road
+  EXPECT_EQ(mobility_of(10, Movable::is_left_out), Mobility::unknown);
+  EXPECT_EQ(mobility_of(32, Movable::is_left_out), Mobility::unknown);
+  EXPECT_EQ(mobility_of(40, Movable::is_left_out), Mobility::at_rest);
+  EXPECT_EQ(mobility_of(252, Movable::is_left_out), Mobility::moving);
   EXPECT_EQ(mobility_of(251), Mobility::at_rest);
   EXPECT_EQ(mobility_of(252), Mobility::moving);
   EXPECT_EQ(mobility_of(259), Mobility::moving);

@@ -18,21 +18,25 @@ static_assert(std::endian::native == std::endian::little, "labels are copied as 
 
 constexpr std::uint32_t kClassBits = 0xFFFF;
 constexpr std::uint32_t kOutlier = 1;
+constexpr std::uint32_t kFirstMovable = 10;  // car
+constexpr std::uint32_t kLastMovable = 32;   // motorcyclist
 constexpr std::uint32_t kFirstMoving = 252;
 constexpr std::uint32_t kLastMoving = 259;
 
-Mobility mobility_of_row(const RoleValues& row, bool has_label) {
+Mobility mobility_of_row(const RoleValues& row, bool has_label, Movable movable) {
   const double value = row[index_of(has_label ? Role::label : Role::intensity)];
   if (!(value >= 0.0 && value <= 4294967295.0)) return Mobility::unknown;
-  if (has_label) return mobility_of(static_cast<std::uint32_t>(value));
+  if (has_label) return mobility_of(static_cast<std::uint32_t>(value), movable);
   return value > 0.5 ? Mobility::moving : Mobility::at_rest;
 }
 
 }  // namespace
 
-Mobility mobility_of(std::uint32_t semantic_label) {
+Mobility mobility_of(std::uint32_t semantic_label, Movable movable) {
   const std::uint32_t semantic_class = semantic_label & kClassBits;
   if (semantic_class <= kOutlier) return Mobility::unknown;
+  const bool is_movable = semantic_class >= kFirstMovable && semantic_class <= kLastMovable;
+  if (is_movable && movable == Movable::is_left_out) return Mobility::unknown;
   const bool moves = semantic_class >= kFirstMoving && semantic_class <= kLastMoving;
   return moves ? Mobility::moving : Mobility::at_rest;
 }
@@ -49,7 +53,7 @@ std::vector<std::uint32_t> read_semantic_labels(const std::filesystem::path& fil
   return labels;
 }
 
-std::vector<LabelledPoint> read_labelled_cloud(const std::filesystem::path& file) {
+std::vector<LabelledPoint> read_labelled_cloud(const std::filesystem::path& file, Movable movable) {
   std::vector<LabelledPoint> points;
   bool has_label = false;
   const auto begin = [&](const CloudFields& fields, std::size_t rows) {
@@ -63,7 +67,7 @@ std::vector<LabelledPoint> read_labelled_cloud(const std::filesystem::path& file
     points.reserve(rows);
   };
   const auto add = [&](const RoleValues& row) {
-    const LabelledPoint point{position_of(row), mobility_of_row(row, has_label)};
+    const LabelledPoint point{position_of(row), mobility_of_row(row, has_label, movable)};
     if (point.p_map.allFinite()) points.push_back(point);
   };
   read_cloud_rows(file, {begin, add});

@@ -8,7 +8,6 @@
 
 #include "mlo/core/error.hpp"
 #include "mlo/core/voxel_grid.hpp"
-#include "mlo/io/labelled_points.hpp"
 #include "mlo/truth/placed_scan.hpp"
 
 namespace mlo {
@@ -54,7 +53,7 @@ std::optional<std::filesystem::path> find_point_labels(const Dataset& dataset) {
 }
 
 LabelledMap build_labelled_map(const Dataset& dataset, const std::filesystem::path& labels,
-                               const PoseList& poses, double voxel_m) {
+                               const PoseList& poses, double voxel_m, Movable movable) {
   const PosesByFrame pose_of(poses);
   Thinned map(voxel_m);
   LabelledMap result;
@@ -83,7 +82,7 @@ LabelledMap build_labelled_map(const Dataset& dataset, const std::filesystem::pa
       const std::vector<Eigen::Vector3f> placed =
           place_scan(*reading.scan, dataset.sensor, *pose, pose_of.motion_per_sweep(frame));
       for (std::size_t k = 0; k < placed.size(); ++k) {
-        if (placed[k].allFinite()) map.add({placed[k], mobility_of(of_scan[k])});
+        if (placed[k].allFinite()) map.add({placed[k], mobility_of(of_scan[k], movable)});
       }
       ++result.scans;
     } catch (const InputError& error) {  // this scan's labels; the others may be good

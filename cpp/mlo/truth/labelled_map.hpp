@@ -8,6 +8,7 @@
 
 #include "mlo/core/labelled_point.hpp"
 #include "mlo/io/dataset.hpp"
+#include "mlo/io/labelled_points.hpp"
 
 namespace mlo {
 
@@ -27,6 +28,7 @@ std::optional<std::filesystem::path> find_point_labels(const Dataset& dataset);
 /// @param poses    T_map_lidar by frame
 /// @param voxel_m  side of the voxels [m], > 0
 LabelledMap build_labelled_map(const Dataset& dataset, const std::filesystem::path& labels,
-                               const PoseList& poses, double voxel_m);
+                               const PoseList& poses, double voxel_m,
+                               Movable movable = Movable::counts_as_at_rest);
 
 }  // namespace mlo
