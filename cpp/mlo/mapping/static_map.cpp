@@ -236,21 +236,19 @@ StaticMap::Counts StaticMap::count_seen_through() const {
   return counts;
 }
 
-std::vector<StaticMap::Entry> StaticMap::kept_entries() const {
+template <class Use>
+void StaticMap::for_each_kept(const Use& use) const {
   const Counts seen_through = count_seen_through();
   const auto is_doubtful = [&](const Entry& entry) {
     if (static_cast<double>(entry.votes) >= config_.sure_votes) return false;
     const auto found = seen_through.find(block_key(entry.point.p_map));
     return found != seen_through.end() && found->second >= kDoubtfulBlock;
   };
-  std::vector<Entry> kept;
-  kept.reserve(size());
   for (const Tile& tile : tiles_) {
     for (const Entry& entry : entries_of(tile)) {
-      if (!is_seen_through(entry) && !is_doubtful(entry)) kept.push_back(entry);
+      if (!is_seen_through(entry) && !is_doubtful(entry)) use(entry);
     }
   }
-  return kept;
 }
 
 std::vector<MapPoint> StaticMap::points() const {
@@ -259,13 +257,14 @@ std::vector<MapPoint> StaticMap::points() const {
 
 std::vector<MapPoint> StaticMap::moved_points(const std::map<std::size_t, SE3>& corrections) const {
   std::vector<MapPoint> points;
-  for (const Entry& entry : kept_entries()) {
+  points.reserve(size());
+  for_each_kept([&](const Entry& entry) {
     points.push_back(entry.point);
     const auto correction = corrections.find(entry.frame);
-    if (correction == corrections.end()) continue;
+    if (correction == corrections.end()) return;
     Eigen::Vector3f& p_map = points.back().p_map;
     p_map = (correction->second * p_map.cast<double>()).cast<float>();
-  }
+  });
   if (corrections.empty()) return points;
   return downsample_first<MapPoint>(points, static_cast<float>(config_.voxel_m),
                                     [](const MapPoint& point) { return point.p_map; });

@@ -98,7 +98,8 @@ class StaticMap {
   void observe(Tile& tile, const ScanView& view) const;
   template <class IsInside>
   void take_back(Tile& tile, std::size_t frame, const IsInside& is_inside);
-  std::vector<Entry> kept_entries() const;
+  template <class Use>
+  void for_each_kept(const Use& use) const;
   void vote(Entry& entry, Sight sight) const;
   static bool is_seen_through(const Entry& entry) { return entry.votes < 0.0F; }
 
