@@ -208,11 +208,14 @@ bool Run::load() {
 }
 
 void Run::save() {
+  if (saving_.valid()) saving_.get();
   ArchiveWriter state;
   state(progress_, output_->state(), pipeline_);
-  if (saving_.valid()) saving_.get();
-  saving_ = std::async(std::launch::async,
-                       [this, bytes = state.take()] { write_checkpoint(state_file(), owner_, bytes); });
+  saving_ = std::async(std::launch::async, [this, bytes = state.take()]() mutable {
+    // What is captured would live until the next state is saved.
+    const std::string own_bytes = std::move(bytes);
+    write_checkpoint(state_file(), owner_, own_bytes);
+  });
 }
 
 void Run::skip(const std::string& problem) {
